@@ -1,4 +1,4 @@
-//! Host time of the comparison and of just-in-time pixels.
+//! Benchmarks of the comparison and of just-in-time pixels, in host time.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -17,7 +17,7 @@ fn head() -> Arc<Head> {
     Arc::new(head.expect("the presets are in range"))
 }
 
-/// The question of one seed, without the search for limits.
+/// Returns the comparison with one seed, without the search for limits.
 fn query() -> CompareQuery {
     let mut shared = ExperimentFile::new();
     for (key, value) in [("scene", "mig"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic")] {
@@ -27,7 +27,8 @@ fn query() -> CompareQuery {
     CompareQuery { shared, only: Vec::new(), seeds: vec![1], limits: false, pictures: false }
 }
 
-/// 10 s of head motion on the Mig, all pipelines with every predictor and every cause of error turned off in turn; no pixels.
+/// Measures all pipelines with every predictor and with each cause of error removed in turn. The runs have 10 s of head
+/// motion and the Mig, without pixels.
 fn all_pipelines(criterion: &mut Criterion) {
     let query = query();
     let mut group = criterion.benchmark_group("compare");
@@ -38,7 +39,7 @@ fn all_pipelines(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// One second of single lines before the beam.
+/// Measures one second of strips of one line, drawn just before the beam.
 fn scanlines(criterion: &mut Criterion) {
     let scene = Arc::new(builtin("full-screen:4").expect("built in"));
     let head = head();

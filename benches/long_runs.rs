@@ -1,5 +1,5 @@
-//! What a field costs in a short run and in a long one, in one process: the goal is the same to 2 %. An element is a field; the
-//! run keeps statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out` does.
+//! Compares the host time of a field in short and in long runs, in one process. The goal is a difference of at most 2
+//! %. An element is a field. The runs keep statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out` does.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -13,20 +13,20 @@ use pxpl5::{
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// A scene of so many triangles; 0 for all that it has.
+/// Returns a scene with at most `triangles` triangles. 0 stands for all.
 fn scene_of(name: &str, triangles: usize) -> Scene {
     let scene = scene::builtin(name).expect("built in");
     if triangles > 0 { scene.decimated(triangles).expect("so many") } else { scene }
 }
 
-/// With a head whose pose is predicted, and all that a report says of it: latencies to light and pixel errors of each field.
+/// Adds a head with a predicted pose, and all results of a report: latencies to light and pixel errors of each field.
 fn tracked(experiment: Experiment) -> Experiment {
     let motion = Arc::new(Synthetic::recorded_use(3));
     let head = Head::new(motion, TrackerConfig::fastrak(), PredictorKind::Kalman, 1).expect("in range");
-    experiment.head(head).summed_by(Some(HeadSum::begin))
+    experiment.head(head).observed_by(Some(HeadSum::begin))
 }
 
-/// With the fields of a short run; a long one has twenty times as many.
+/// Returns experiments with the number of fields of a short run. A long run has twenty times as many fields.
 fn experiments() -> [(&'static str, Experiment, u64); 5] {
     let small = MachineConfig::small_hmd;
     let control = Experiment::new(small(), RenderingControl::stereo(), scene_of("mig", 0));

@@ -1,6 +1,8 @@
-//! Host time of whole machines, without pixels and with all of them. Goals: Slats with 140 triangles 3,000 fields/s
-//! without pixels and 600 with all; Rendering Control with the head 10 ms a stereo pair without pixels and 20 with all;
-//! an idle machine 100,000 fields/s; Slats at the cycle level 3 fields/s.
+//! Benchmarks of whole machines in host time, without pixels and with all pixels.
+//!
+//! Goals: Slats with 140 triangles 3,000 fields/s without pixels and 600 with all; Rendering Control with the scene
+//! `head` 10 ms a stereo pair without pixels and 20 with all; an idle machine 100,000 fields/s; Slats at the cycle
+//! level 3 fields/s.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -11,7 +13,7 @@ use pxpl5::{
 };
 use std::hint::black_box;
 
-/// With threads that compute pixels beside the one that simulates.
+/// Choices of pixels, each with the number of threads that compute pixels in addition to the simulating thread.
 const PIXELS: [(&str, Pixels, usize); 3] =
     [("no pixels", Pixels::Off, 0), ("all pixels", Pixels::All, 0), ("all pixels, a second thread", Pixels::All, 1)];
 
@@ -19,7 +21,7 @@ fn run(experiment: &Experiment, pixels: Pixels, threads: usize) -> Outcome {
     experiment.clone().pixels(pixels).host(Workstation::with_threads(threads)).run().expect("the preset runs")
 }
 
-/// An element is a field.
+/// Measures Slats with 140 triangles. An element is a field.
 fn slats_140(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
     let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(140)).expect("it has 417 triangles");
@@ -32,8 +34,8 @@ fn slats_140(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The most triangles for every field, with the graphics processor's code run on the i860 model. An element is a field; the goal is 3 fields a
-/// second, a twentieth of real time.
+/// Measures the largest load for every field, with the graphics processor's code on the i860 model. An element is a
+/// field. The goal is 3 fields a second, a twentieth of real time.
 fn slats_110_cycle(criterion: &mut Criterion) {
     const FIELDS: u64 = 24;
     let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(110)).expect("it has 417 triangles");
@@ -45,7 +47,8 @@ fn slats_110_cycle(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// An element is a stereo pair that was shown; the three still on their way at the end are extra work, so it is a long run.
+/// Measures Rendering Control. An element is a stereo pair that was shown. The run is long, because three pairs in
+/// progress at its end are additional work.
 fn rendering_control_head(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(960);
@@ -58,7 +61,7 @@ fn rendering_control_head(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// No program is loaded: what the retraces alone cost. An element is a field.
+/// Measures a machine without programs, which handles retraces only. An element is a field.
 fn idle(criterion: &mut Criterion) {
     const FIELDS: u64 = 1_000;
     let pipeline = RenderingControl::stereo();

@@ -1,6 +1,6 @@
-//! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderers `euc` and `retrofire` beside the pixels
-//! of the emulated machine, without its times, by both pixel arrays, of which the bit-serial one works in two ways. An
-//! element is a picture.
+//! Compares the software renderers `euc` and `retrofire` with the pixels of the emulated machine, without its simulated
+//! times. The scene `head` of 59,592 triangles is drawn for one eye, 640 x 480, Gouraud, Z-buffered. The machine uses
+//! both pixel arrays, of which the bit-serial one has two modes. An element is a picture.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 

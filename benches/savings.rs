@@ -1,22 +1,25 @@
-//! What each saving is worth: the same run with it and without it, in one process. Neither changes what comes out
-//! (`tests/savings.rs`). Then what looking costs: no pixels, one field of 60 looked at, all pixels; the goal is that the
-//! second is within 10 % of the first.
+//! Measures the effect of each optimization: the same run with the optimization enabled and disabled, in one process.
+//! The results are equal (`tests/savings.rs`).
+//!
+//! Also measures the cost of reading pictures: no pixels, one field of 60 read, all pixels. The goal is that the second
+//! takes at most 10 % longer than the first.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
-    scene, scene::Scene,
+    Experiment, Level, MachineConfig, NtscDisplay, Optimization, PeriodNumber, Pixels, RenderingControl, Slats,
+    Workstation, scene, scene::Scene,
 };
 use std::hint::black_box;
 
-/// The Mig of so many triangles, of which there are 417.
+/// Returns the Mig with at most `triangles` of its 417 triangles.
 fn mig(triangles: usize) -> Scene {
     scene::builtin("mig").and_then(|mig| mig.decimated(triangles)).expect("so many")
 }
 
-/// The aircraft leaves regions empty under both pipelines, twelve triangles of it nearly all.
+/// Returns the experiments. The aircraft leaves regions empty under both pipelines, and twelve of its triangles leave
+/// nearly all empty.
 fn experiments() -> [(&'static str, Experiment); 3] {
     [
         ("rendering-control-mig", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417))),
@@ -25,17 +28,17 @@ fn experiments() -> [(&'static str, Experiment); 3] {
     ]
 }
 
-/// Fields long enough to show something, short enough for the slowest way.
-const fn fields(saving: Saving) -> u64 {
-    if matches!(saving, Saving::IdleBoards) { 2 } else { 20 }
+/// Returns a number of fields that is large enough to show a picture and small enough for the slowest run.
+const fn fields(saving: Optimization) -> u64 {
+    if matches!(saving, Optimization::IdleBoards) { 2 } else { 20 }
 }
 
-/// An element is a field.
+/// Measures every optimization. An element is a field.
 fn savings(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
-        for saving in Saving::ALL {
-            let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
-            let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
+        for saving in Optimization::ALL {
+            let pixels = if saving == Optimization::EmptyRegions { Pixels::All } else { Pixels::Off };
+            let level = if saving == Optimization::RepeatedCode { Level::Cycle } else { Level::Transaction };
             let with = experiment.clone().pixels(pixels).level(level).host(Workstation::with_threads(1));
             let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
             group.throughput(Throughput::Elements(fields(saving)));
@@ -54,7 +57,7 @@ fn run(experiment: &Experiment, fields: u64) -> u64 {
     black_box(machine.finish_pixels())
 }
 
-/// The same with so many looks at the left eye's picture every 60 fields.
+/// Runs an experiment and reads the left eye's picture `looks` times every 60 fields.
 fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
     let mut machine = experiment.build().expect("the preset is valid");
     for field in (60..=fields).step_by(60) {
@@ -68,7 +71,7 @@ fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
     black_box(machine.finish_pixels())
 }
 
-/// The head of 59,592 triangles in stereo. An element is a field.
+/// Measures the scene `head` of 59,592 triangles in stereo. An element is a field.
 fn looking(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
     let head = scene::builtin("head").expect("built in");

@@ -1,5 +1,5 @@
-//! Limits of Slats by simulation: the prototype, its variants, and experiments beyond it. Prints each limit once and
-//! measures how long the search takes.
+//! Limits of Slats by simulation: the prototype, its variants, and experiments beyond them. Prints each limit once and
+//! measures the time of the search.
 
 #![allow(missing_docs, reason = "criterion_group! makes functions without documentation")]
 
@@ -13,12 +13,12 @@ fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
     MachineConfig { n_gps, n_renderers, ..preset }
 }
 
-/// Triangles that cover the screen.
+/// Returns a query with triangles that cover the screen.
 fn all(config: MachineConfig, slats: Slats) -> LimitQuery {
     LimitQuery::of_papers(config, slats).expect("Slats is known")
 }
 
-/// A query with small triangles, spread over the screen.
+/// Returns a query with small triangles, spread over the screen.
 fn typical(config: MachineConfig, slats: Slats) -> LimitQuery {
     let mut query = all(config, slats);
     query.criterion.scene = TestScene::Typical;

@@ -74,32 +74,35 @@ pub use pxpl5_lab::{
     readings, registry, rig, suitability, sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
-    Arrival, Board, ConfigError, Happening, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports,
-    Preset, Record, RunError, Saving, StageSpan, Swap, Traffic, Transfer,
+    Arrival, Board, ConfigError, EventDescription, LateRegion, Machine, MachineConfig, Observation, Optimization,
+    PRESETS, Parameter, Ports, Preset, Record, RunError, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, HeadSum, LATENCY_PARTS, LatencyCurve, LatencyParts,
-    Measure, Measured, NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets,
-    Registration, Report, Results, Showing, SurfaceStatistics, TooHeavy, picture, side_by_side,
+    Budget, ErrorCauses, ErrorPart, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS, LatencyCurve,
+    LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, Percentiles, PixelErrors, QUANTITIES,
+    Quantity, RasterOffsets, Registration, Report, Results, Showing, SurfaceStatistics, TooHeavy, picture,
+    side_by_side,
 };
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
-    FIELDS_RANGE, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp,
-    Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd, PictureTimes, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, ResultWindow, Sampled, Samples,
-    Settled, Setup, Slats, SlatsLighting, Source, Statistics, Stepper, Summary, Summing, Sums, TestScene, Viewpoint,
-    WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
+    FIELDS_RANGE, FinalResults, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host,
+    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, ObserverFactory, Outcome, Pause,
+    PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl,
+    ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting, Source, Statistics, Stepper, StreamingObserver,
+    Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
-pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};
+pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmSurfaces, results, timeline, trace_export};
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 pub use slats::CopySchedule;
 
 /// Snapshots of boards during a run: see [`Stepper`].
 pub mod looks {
-    pub use pxpl5_gp::{Account, BreakpointHit, GpBoard, GpLook, Priority, Processor, ProgramLook, WaitingMail};
-    pub use pxpl5_renderer::{Lanes, PixelArray, Plane, RendererLook};
-    pub use pxpl5_ring::{OnChannel, WaitReason, WaitingMessage};
+    pub use pxpl5_gp::{
+        Account, BreakpointHit, GpBoard, GpSnapshot, Priority, Processor, ProgramSnapshot, WaitingMessageInfo,
+    };
+    pub use pxpl5_renderer::{Lanes, PixelArray, Plane, RendererSnapshot};
+    pub use pxpl5_ring::{ChannelSnapshot, WaitReason, WaitingMessage};
 }
 
 /// Types for writing a pipeline of your own: firmware on graphics processors, display lists, commands for renderers,
@@ -112,7 +115,7 @@ pub mod firmware {
     pub use pxpl5_gp::{Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout, PixelArray};
     pub use pxpl5_wire::{
-        Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, NodeId, PeriodNumber,
+        Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber,
         PictureNumber, RegionGrid, RegionId, ViewNumber, Word, swap_request,
     };
 }

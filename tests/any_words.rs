@@ -74,7 +74,7 @@ fn message() -> impl Strategy<Value = (Body, usize, u64)> {
 fn look(display: &dyn Display, now: Time) {
     for surface in 0..display.surfaces().len() {
         let of_surface = &display.surfaces()[surface];
-        for picture in [display.shown(surface), display.seen_so_far(surface, now)].into_iter().flatten() {
+        for picture in [display.shown(surface), display.picture_so_far(surface, now)].into_iter().flatten() {
             assert_eq!(picture.dimensions(), (of_surface.width, of_surface.height));
         }
         for period in 0..PERIODS {

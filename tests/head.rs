@@ -12,7 +12,7 @@ use pxpl5::{
     Aim, Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster,
     Viewpoint,
 };
-use pxpl5::{Film, FilmOf};
+use pxpl5::{Film, FilmSurfaces};
 use std::sync::Arc;
 use support::video;
 
@@ -71,7 +71,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
 /// instant, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").before(raster).aiming(Aim::FirstPixel);
+    let head = head.expect("in range").before(raster).with_aim(Aim::FirstPixel);
     Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Field, false), edge_scene(0.0))
         .head(head)
         .fields(fields)
@@ -122,7 +122,7 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
 #[test]
 fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
     let mut bytes = Vec::new();
-    Film::new(panned(40.0, Raster::Vdrt, 30), PeriodNumber(10), 3, FilmOf::One(Eye::Left.into()))
+    Film::new(panned(40.0, Raster::Vdrt, 30), PeriodNumber(10), 3, FilmSurfaces::One(Eye::Left.into()))
         .write(&[], &mut bytes)
         .expect("in range");
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");

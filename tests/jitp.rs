@@ -58,7 +58,7 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
 /// Returns a run in which a field is drawn for one instant as in the paper: for its first pixel.
 fn conventional() -> Outcome {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(Viewpoint::Field, true) };
-    run(jitp, perfect(Pan::at(PAN)).aiming(Aim::FirstPixel), FIELD.0 + 2)
+    run(jitp, perfect(Pan::at(PAN)).with_aim(Aim::FirstPixel), FIELD.0 + 2)
 }
 
 /// Returns the seconds between the beam's passes over two pixels of a field.
@@ -292,8 +292,8 @@ fn metal_misplaces_objects_even_for_a_still_head() {
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
-    // The tracker's field is distorted by 20 mm at a distance of 1 m, like a bowl, and content lies at 2 m and more.
-    // The error is some pixels and constant, except for the different lines of two fields.
+    // Metal distorts the tracker's field in the form of a bowl: by 20 mm at a distance of 1 m. Content lies at 2 m and
+    // more. The error is some pixels and constant, except for the different lines of two fields.
     let centre = errors.centre_px;
     assert!(centre.p50 > 0.5 && (centre.max - centre.p50).abs() < 1e-3, "{centre:?}");
 }

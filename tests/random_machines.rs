@@ -9,8 +9,8 @@
 use pxpl5::firmware::NodeId;
 use pxpl5::results::quantities_csv;
 use pxpl5::{
-    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Outcome, Pixels, QUANTITIES,
-    Results, RunError, Saving, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
+    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Optimization, Outcome, Pixels,
+    QUANTITIES, Results, RunError, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
 };
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -232,7 +232,7 @@ fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nob
             assert_eq!(report(&experiment.clone().shuffle_ties(seed), told), expected, "{told}, ties {seed}");
         }
         // Without the optimization `IdleBoards`, runs take minutes, so `tests/savings.rs` covers it.
-        for saving in Saving::ALL.into_iter().filter(|saving| *saving != Saving::IdleBoards) {
+        for saving in Optimization::ALL.into_iter().filter(|saving| *saving != Optimization::IdleBoards) {
             assert_eq!(report(&experiment.clone().without(saving), told), expected, "{told}, without {saving}");
         }
     });

@@ -9,7 +9,7 @@ use pxpl5::{
     Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, Pixels,
     RenderingControl, Report, Slats, Viewpoint, scene, side_by_side,
 };
-use pxpl5::{Film, FilmError, FilmOf};
+use pxpl5::{Film, FilmError, FilmSurfaces};
 use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_sim::{Span, Time};
@@ -435,7 +435,7 @@ fn remembered() -> (Experiment, Outcome) {
 fn a_film_shows_every_field_at_the_true_rate() {
     let (experiment, outcome) = remembered();
     let mut bytes = Vec::new();
-    Film::new(experiment, PeriodNumber(6), 4, FilmOf::All)
+    Film::new(experiment, PeriodNumber(6), 4, FilmSurfaces::All)
         .write(&[("seed", "1".to_owned())], &mut bytes)
         .expect("written");
     let (info, frames) = frames(&bytes);
@@ -454,7 +454,7 @@ fn a_film_shows_every_field_at_the_true_rate() {
 #[test]
 fn a_film_without_a_field_is_refused() {
     let (experiment, _) = remembered();
-    let film = Film::new(experiment, PeriodNumber::FIRST, 0, FilmOf::One(Eye::Left.into()));
+    let film = Film::new(experiment, PeriodNumber::FIRST, 0, FilmSurfaces::One(Eye::Left.into()));
     assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 

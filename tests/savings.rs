@@ -3,10 +3,10 @@
 mod support;
 
 use pxpl5::{
-    Experiment, Eye, Jitp, Level, Machine, MachineConfig, PeriodNumber, Pixels, RenderingControl, Saving, Slats,
+    Experiment, Eye, Jitp, Level, Machine, MachineConfig, Optimization, PeriodNumber, Pixels, RenderingControl, Slats,
     Viewpoint, scene, scene::Scene,
 };
-use pxpl5_framebuffer::SeenField;
+use pxpl5_framebuffer::ScannedField;
 use std::collections::BTreeSet;
 use support::ntsc;
 
@@ -35,13 +35,13 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
 }
 
 /// Returns the pixels of every displayed field, eye by eye.
-fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
+fn seen(machine: &Machine, fields: u64) -> Vec<ScannedField> {
     let boards = Eye::BOTH.into_iter().filter_map(|eye| ntsc(machine.record()).boards().get(eye.index()));
     boards.flat_map(|board| (0..fields).filter_map(|field| board.seen(PeriodNumber(field)))).collect()
 }
 
 fn pictures(machine: &Machine, fields: u64) -> Vec<image::RgbImage> {
-    seen(machine, fields).iter().map(SeenField::picture).collect()
+    seen(machine, fields).iter().map(ScannedField::picture).collect()
 }
 
 /// Returns the number of different colours in a picture.
@@ -49,7 +49,7 @@ fn colours(picture: &image::RgbImage) -> usize {
     picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len()
 }
 
-fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
+fn assert_same(experiment: &Experiment, saving: Optimization, fields: u64) {
     let with = after(experiment, fields);
     let without = after(&experiment.clone().without(saving), fields);
     assert_eq!(without.record().trace_hash(), with.record().trace_hash(), "{saving} in {experiment:?}");
@@ -63,28 +63,28 @@ fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
 #[test]
 fn boards_that_sleep_have_nothing_to_do() {
     for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::Lazy), Saving::IdleBoards, 3);
+        assert_same(&experiment.pixels(Pixels::Lazy), Optimization::IdleBoards, 3);
     }
 }
 
 #[test]
 fn transfers_in_closed_form_end_when_their_words_do() {
     for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::Lazy), Saving::Transfers, 10);
+        assert_same(&experiment.pixels(Pixels::Lazy), Optimization::Transfers, 10);
     }
 }
 
 #[test]
 fn regions_without_primitives_look_as_if_they_had_been_drawn() {
     for experiment in experiments() {
-        assert_same(&experiment.pixels(Pixels::All), Saving::EmptyRegions, 10);
+        assert_same(&experiment.pixels(Pixels::All), Optimization::EmptyRegions, 10);
     }
 }
 
 #[test]
 fn code_that_repeats_takes_the_clocks_that_are_counted() {
     for experiment in experiments() {
-        assert_same(&experiment.level(Level::Cycle).pixels(Pixels::Lazy), Saving::RepeatedCode, 10);
+        assert_same(&experiment.level(Level::Cycle).pixels(Pixels::Lazy), Optimization::RepeatedCode, 10);
     }
 }
 
@@ -101,7 +101,7 @@ fn nobody_looking_changes_no_time() {
 fn savings_do_not_meet() {
     let [_, slats, _] = experiments();
     let slats = slats.level(Level::Cycle).pixels(Pixels::All);
-    let without = Saving::ALL.into_iter().fold(slats.clone(), Experiment::without);
+    let without = Optimization::ALL.into_iter().fold(slats.clone(), Experiment::without);
     assert_eq!(after(&without, 2).record().trace_hash(), after(&slats, 2).record().trace_hash());
 }
 
@@ -111,15 +111,15 @@ fn a_saving_that_is_given_up_is_paid_for_in_events() {
     let [_, slats, _] = experiments();
     let slats = slats.pixels(Pixels::Off);
     let with = after(&slats, 3).events();
-    assert!(after(&slats.clone().without(Saving::IdleBoards), 3).events() > 10 * with);
-    assert!(after(&slats.clone().without(Saving::Transfers), 3).events() > 10 * with);
+    assert!(after(&slats.clone().without(Optimization::IdleBoards), 3).events() > 10 * with);
+    assert!(after(&slats.clone().without(Optimization::Transfers), 3).events() > 10 * with);
 }
 
 #[test]
 fn savings_are_known_by_their_names() {
-    for saving in Saving::ALL {
+    for saving in Optimization::ALL {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
-    let error = "idleness".parse::<Saving>().expect_err("no saving");
+    let error = "idleness".parse::<Optimization>().expect_err("no saving");
     assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
 }

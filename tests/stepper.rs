@@ -158,7 +158,7 @@ fn an_event_is_taken_at_its_time_and_named_with_its_board() {
     let last = stepper.last().expect("an event");
     assert_eq!((last.board, last.time), (Board::Renderer(3), stepper.now()));
     assert!(stepper.now() > Time::ZERO);
-    let next = stepper.machine().next_happening().expect("the machine is at work");
+    let next = stepper.machine().next_event_description().expect("the machine is at work");
     stepper.step_event();
     assert_eq!(stepper.last(), Some(next));
 }

@@ -4,8 +4,8 @@ use crate::opengl::OpenGl;
 use crate::peers::{Euc, Ours, Retrofire, views};
 use crate::timing::{Fallible, Measured, Way, in_turns};
 use pxpl5::{
-    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
-    scene, scene::Scene,
+    Experiment, Level, MachineConfig, NtscDisplay, Optimization, PeriodNumber, Pixels, RenderingControl, Slats,
+    Workstation, scene, scene::Scene,
 };
 use pxpl5_analytic::{PerTriangle, SlatsModel};
 use pxpl5_renderer::Lanes;
@@ -33,7 +33,7 @@ impl Row {
 
 /// An optimization of the simulator with its effect.
 pub(crate) struct SavingRow {
-    pub(crate) saving: Saving,
+    pub(crate) saving: Optimization,
     pub(crate) work: &'static str,
     pub(crate) with_ms: f64,
     pub(crate) without_ms: f64,
@@ -312,8 +312,8 @@ fn analytic(rounds: usize) -> Fallible<Vec<Row>> {
 }
 
 /// Returns the number of fields of a run without an optimization. The number is small for the slowest runs.
-const fn fields_without(saving: Saving) -> u64 {
-    if matches!(saving, Saving::IdleBoards | Saving::Transfers) { 2 } else { 48 }
+const fn fields_without(saving: Optimization) -> u64 {
+    if matches!(saving, Optimization::IdleBoards | Optimization::Transfers) { 2 } else { 48 }
 }
 
 /// Measures every optimization, enabled and disabled.
@@ -323,10 +323,10 @@ pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
         ("Slats, 140 triangles", slats(140)?),
     ];
     let mut rows = Vec::new();
-    for saving in Saving::ALL {
+    for saving in Optimization::ALL {
         for (work, experiment) in &works {
-            let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
-            let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
+            let pixels = if saving == Optimization::EmptyRegions { Pixels::All } else { Pixels::Off };
+            let level = if saving == Optimization::RepeatedCode { Level::Cycle } else { Level::Transaction };
             let with = experiment.clone().pixels(pixels).level(level);
             let without = with.clone().without(saving);
             let all = fields_without(saving);

@@ -5,7 +5,7 @@ use crate::timing::ArpTiming;
 
 /// Intersection of a direction with a face, as components along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Meeting {
+pub(crate) struct FaceHit {
     /// The face that the direction hits.
     pub(crate) face: CubeFace,
     /// Component along the axis of the face, greater than zero.
@@ -16,7 +16,7 @@ pub(crate) struct Meeting {
     pub(crate) up: i64,
 }
 
-impl Meeting {
+impl FaceHit {
     /// Returns the face that a direction hits, or `None` for the zero vector.
     pub(crate) fn of(direction: [i64; 3]) -> Option<Self> {
         if direction == [0; 3] {
@@ -110,7 +110,7 @@ impl AddressUnit {
     /// Returns the footprint of a direction from [`crate::MatrixWords::turn`], or `None` for the zero vector.
     #[must_use]
     pub fn footprint(&self, direction: [i64; 3]) -> Option<Footprint> {
-        let met = Meeting::of(direction)?;
+        let met = FaceHit::of(direction)?;
         // Positions in texels with `quotient_bits` fractional bits.
         let across = self.place(self.quotient(met.right, met.forward));
         let down = self.place(self.quotient(-met.up, met.forward));
@@ -158,7 +158,7 @@ impl AddressUnit {
 
     /// Returns the texel that a direction in integers hits. The computation is exact.
     fn nearest(&self, direction: [i64; 3]) -> Option<TexelAddress> {
-        let met = Meeting::of(direction)?;
+        let met = FaceHit::of(direction)?;
         let inner = i64::from(self.geometry.inner());
         let [column, row] = [met.right, -met.up].map(|side| {
             let n = (met.forward + side) * inner / (2 * met.forward);

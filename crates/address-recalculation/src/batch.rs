@@ -201,7 +201,7 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
         four[2][i] = lower[0];
         four[3][i] = lower[1];
     }
-    if weight_bits <= WEIGHTS_OF_TWO {
+    if weight_bits <= MAX_PACKED_WEIGHT_BITS {
         two(&four, batch, weight_bits, &mut out[..count]);
     } else {
         each(&four, batch, weight_bits, &mut out[..count]);
@@ -211,7 +211,7 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
 /// Largest number of weight bits for which two colour channels, 16 bits apart, share one product.
 ///
 /// The reason is that 255 * 4^4 plus half a unit is below 2^16.
-const WEIGHTS_OF_TWO: u32 = 4;
+const MAX_PACKED_WEIGHT_BITS: u32 = 4;
 
 /// Interpolates red and blue in one product, and green in another.
 #[inline(always)]

@@ -126,7 +126,7 @@ impl AddressRecalculationPipeline {
             while boards.scanned.len() as u64 > kept {
                 boards.scanned.pop_front();
             }
-            boards.latch.forget_before(Time(oldest.0.saturating_sub(self.optics.config.timing.depth().0)));
+            boards.latch.discard_before(Time(oldest.0.saturating_sub(self.optics.config.timing.depth().0)));
             // Swap the memories that are ready for this retrace.
             for (memory, buffer) in boards.retrace(now) {
                 let port = self.nodes[surface * self.optics.config.ports_of_an_eye() + memory];
@@ -327,11 +327,11 @@ impl DisplayConfig for ArpConfig {
         self.fields_kept = periods;
     }
 
-    fn show_behind_all(&mut self, background: u32) {
+    fn set_background(&mut self, background: u32) {
         self.background = background & 0x00FF_FFFF;
     }
 
-    fn takes_faces(&self) -> bool {
+    fn shows_cube_faces(&self) -> bool {
         true
     }
 

@@ -39,7 +39,7 @@ impl LookStats {
 }
 
 /// Smallest number of pixels for which the group computation is used.
-const FEWEST: usize = 4;
+const MIN_GROUP_PIXELS: usize = 4;
 
 /// Computes which texels pixels read.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +67,7 @@ impl<'a> Addressing<'a> {
     /// Returns false without computing anything if the words are too wide, or if there are so few pixels that single
     /// computation is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
-        let is_worth_it = self.is_exact && vectors[0].len() >= FEWEST;
+        let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
             addresses(batch, &self.unit, vectors, matrix);
         }

@@ -148,7 +148,7 @@ impl OrientationLatch {
     }
 
     /// Discards matrices that cannot be latched at `time` or later.
-    pub fn forget_before(&mut self, time: Time) {
+    pub fn discard_before(&mut self, time: Time) {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded.drain(..after.saturating_sub(1));
     }

@@ -2,7 +2,7 @@
 
 mod support;
 
-use address_recalculation::literal::{BankedMemory, LiteralPipeline};
+use address_recalculation::literal::{BankedMemory, ReferencePipeline};
 use address_recalculation::{
     ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming, Vector,
 };
@@ -36,7 +36,7 @@ fn by_registers(
 ) -> (Vec<u32>, [u64; 2]) {
     let banks: Vec<BankedMemory> = memories.iter().map(BankedMemory::of).collect();
     let behind = behind.map(BankedMemory::of);
-    let mut pipeline = LiteralPipeline::new(config, config.table().expect("valid"));
+    let mut pipeline = ReferencePipeline::new(config, config.table().expect("valid"));
     assert_eq!(pipeline.stages() as u64, config.timing.stages());
     let matrix = orientation.words(config.timing.matrix_bits);
     let mut pixels = vec![0; 31 * 14];

@@ -268,11 +268,11 @@ fn its_configuration_is_known_by_name_and_by_all_that_it_holds() {
     let mut other = CONFIG;
     let tables: Vec<&str> = other.tables_mut().into_iter().map(|(name, _)| name).collect();
     assert_eq!(tables, ["arp", "arp_scan"]);
-    assert!(config.takes_faces() && config.equals(&CONFIG));
+    assert!(config.shows_cube_faces() && config.equals(&CONFIG));
     other.remember(7);
     assert_eq!(other.fields_kept, 7);
     assert!(!config.equals(&other));
-    other.show_behind_all(0xFF_12_34_56);
+    other.set_background(0xFF_12_34_56);
     assert_eq!(other.background, 0x12_34_56);
     assert!(DisplayConfig::check(&other).is_ok());
     other.remember(0);

@@ -4,7 +4,7 @@ use crate::config::CubeControlConfig;
 use crate::update::FaceUpdate;
 use address_recalculation::CubeFace;
 use glam::{Mat4, Vec4};
-use pphigs::{BIN_ENTRY_BYTES, EyeView, FrameView, Pass, PrimitiveCounts, Share, Surrounding, TransformCost};
+use pphigs::{BIN_ENTRY_BYTES, CubeTransform, EyeView, FrameView, Pass, PrimitiveCounts, Share, TransformCost};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 use pxpl5_wire::{PictureNumber, RegionId};
@@ -140,7 +140,7 @@ impl Work for CubePass {
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Ok(passes) = self.faces.as_slice().try_into() else { return Ok(self.by_table(timing)) };
-        let made = Surrounding { passes, context: self.context }.run_code(timing, processor)?;
+        let made = CubeTransform { passes, context: self.context }.run_code(timing, processor)?;
         Ok(made.map_or_else(|| self.by_table(timing), |made| made.span))
     }
 

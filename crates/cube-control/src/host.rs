@@ -9,7 +9,7 @@ use pxpl5_wire::PictureNumber;
 
 /// The host's next action when it is ready for an update.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Planned {
+pub enum HostAction {
     /// Send this update now.
     Send(FaceUpdate),
     /// Call the plan again at this instant.
@@ -30,18 +30,18 @@ pub async fn host(
     gp: Gp,
     config: CubeControlConfig,
     timing: HostTiming,
-    mut plan: impl FnMut(PictureNumber, Time) -> Planned,
+    mut plan: impl FnMut(PictureNumber, Time) -> HostAction,
 ) -> Result<(), Fault> {
     let mut next = PictureNumber::FIRST;
     loop {
         // Choose the next update.
         let update = match plan(next, gp.now()) {
-            Planned::Send(update) => update,
-            Planned::Wait(until) => {
+            HostAction::Send(update) => update,
+            HostAction::Wait(until) => {
                 gp.spend(until.since(gp.now())).await;
                 continue;
             }
-            Planned::Nothing => return Ok(()),
+            HostAction::Nothing => return Ok(()),
         };
         // Send it, and wait until all slaves have applied its edits.
         send(&gp, &config, timing, update).await;

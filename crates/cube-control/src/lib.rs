@@ -18,7 +18,7 @@
 //! - **Faces.** The host sends the eye's position but no orientation. Each slave derives six axis-aligned views
 //!   ([`face_view`]). A primitive is transformed once for each face that it touches. Comparisons of coordinates discard
 //!   primitives outside a face. The table of times charges nothing for them (assumed). At the cycle level they take the
-//!   time of their code ([`pphigs::Surrounding`]).
+//!   time of their code ([`pphigs::CubeTransform`]).
 //! - **Depth.** The depth of a pixel is the renderers' depth: z/w along the axis of the face, in 24 bits. The near
 //!   plane is 0, and empty pixels have all bits set. All views have the same near and far plane, so depths of different
 //!   memories can be compared. A region is copied as two words per texel in 32 messages, through two blocks of the
@@ -55,7 +55,7 @@ mod warped_lists;
 
 pub use config::{CubeControlConfig, Faces};
 pub use faces::{CubePass, face_view};
-pub use host::{Planned, host};
+pub use host::{HostAction, host};
 pub use master::master;
 pub use slave::slave;
 pub use update::FaceUpdate;

@@ -6,7 +6,7 @@ use crate::rules::Completed;
 use crate::update::FaceUpdate;
 use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId};
+use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
 /// State of a renderer, as known to the master.
@@ -21,7 +21,7 @@ enum RendererUse {
 
 /// State of an update that is in progress.
 #[derive(Debug)]
-struct UnderWay {
+struct UpdateProgress {
     update: FaceUpdate,
     /// Number of earlier updates of the same memory. After as many swaps, the buffer is free.
     before: u64,
@@ -37,7 +37,7 @@ struct UnderWay {
     missing: Option<u64>,
 }
 
-impl UnderWay {
+impl UpdateProgress {
     /// Returns the regions with primitives, heaviest first. An update without primitives has one region.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
@@ -68,7 +68,7 @@ struct CubeMaster {
     /// The next update to EDIT.
     next_edit: PictureNumber,
     /// Updates from number `completed.copied` on.
-    under_way: VecDeque<UnderWay>,
+    under_way: VecDeque<UpdateProgress>,
     /// Number of updates of each memory so far.
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
@@ -128,11 +128,11 @@ impl CubeMaster {
         self.config.faces.memories.iter().map(|node| self.gp.status(*node)).sum()
     }
 
-    fn under_way(&self, update: PictureNumber) -> Option<&UnderWay> {
+    fn under_way(&self, update: PictureNumber) -> Option<&UpdateProgress> {
         self.under_way.get(self.place(update)?)
     }
 
-    fn under_way_mut(&mut self, update: PictureNumber) -> Option<&mut UnderWay> {
+    fn under_way_mut(&mut self, update: PictureNumber) -> Option<&mut UpdateProgress> {
         let place = self.place(update)?;
         self.under_way.get_mut(place)
     }
@@ -146,11 +146,11 @@ impl CubeMaster {
         self.swaps_known = self.swaps();
         // Order of urgency: announce, copy, token, edit.
         self.begin_render();
-        if let Some(place) = self.update_to_announce() {
+        if let Some(place) = self.next_announcement() {
             self.announce(place).await;
-        } else if let Some((renderer, target)) = self.copy_that_may_begin() {
+        } else if let Some((renderer, target)) = self.next_allowed_copy() {
             self.copy(renderer, target).await;
-        } else if let Some((renderer, region)) = self.region_that_may_begin() {
+        } else if let Some((renderer, region)) = self.next_allowed_region() {
             self.send_token(renderer, region).await;
         } else if self.completed.may_edit(self.next_edit) {
             self.edit().await;
@@ -168,7 +168,7 @@ impl CubeMaster {
     }
 
     /// Returns the first update that is transformed, and whose memory shows its previous update.
-    fn update_to_announce(&self) -> Option<usize> {
+    fn next_announcement(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
             let is_known = one.transformed == self.config.slaves.len();
             let port = self.config.faces.memories[usize::from(one.update.memory)];
@@ -201,7 +201,7 @@ impl CubeMaster {
         self.rendering = Some(Rendering { number, unassigned, regions, tokens_out: 0 });
     }
 
-    fn region_that_may_begin(&self) -> Option<(usize, RegionId)> {
+    fn next_allowed_region(&self) -> Option<(usize, RegionId)> {
         let region = *self.rendering.as_ref()?.unassigned.front()?;
         let renderer = self.renderers.iter().position(|state| *state == RendererUse::Idle)?;
         Some((renderer, region))
@@ -231,7 +231,7 @@ impl CubeMaster {
     }
 
     /// Returns a region that a renderer holds and whose memory is now available.
-    fn copy_that_may_begin(&self) -> Option<(usize, CopyTarget)> {
+    fn next_allowed_copy(&self) -> Option<(usize, CopyTarget)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match state {
             RendererUse::Holding(target) => self.is_announced(target.picture).then_some((renderer, *target)),
             RendererUse::Idle | RendererUse::Receiving => None,
@@ -264,7 +264,8 @@ impl CubeMaster {
         let before = *of_memory;
         *of_memory += 1;
         let entries = vec![0; usize::from(self.config.faces.regions())];
-        let fresh = UnderWay { update, before, edited: 0, transformed: 0, entries, announced: false, missing: None };
+        let fresh =
+            UpdateProgress { update, before, edited: 0, transformed: 0, entries, announced: false, missing: None };
         self.under_way.push_back(fresh);
     }
 
@@ -301,21 +302,21 @@ impl CubeMaster {
             self.gp.end(Stage::Render, rendering.number, Some(SurfaceId(0)));
             self.completed.rendered += 1;
             self.rendering = None;
-            self.forget_copied();
+            self.remove_finished();
         }
     }
 
     /// Records the arrival of a region. `low` is the low word of the update's number.
     fn note_copied(&mut self, low: u32) {
-        let of_update = |one: &&mut UnderWay| one.update.number.to_words()[0] == low;
+        let of_update = |one: &&mut UpdateProgress| one.update.number.to_words()[0] == low;
         if let Some(missing) = self.under_way.iter_mut().find(of_update).and_then(|one| one.missing.as_mut()) {
             *missing = missing.saturating_sub(1);
         }
-        self.forget_copied();
+        self.remove_finished();
     }
 
     /// Removes updates whose regions have all arrived and whose commands have all been accepted.
-    fn forget_copied(&mut self) {
+    fn remove_finished(&mut self) {
         while self.completed.rendered > self.completed.copied
             && self.under_way.front().is_some_and(|one| one.missing == Some(0))
         {
@@ -326,7 +327,7 @@ impl CubeMaster {
 }
 
 pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget) -> CopyOrder {
-    let way = CopyWay::ThroughBacking;
+    let way = CopyPath::ThroughBacking;
     CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.faces.content }
 }
 

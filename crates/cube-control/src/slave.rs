@@ -5,7 +5,7 @@ use crate::faces::{CubePass, context_of};
 use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
-use pphigs::{DisplayList, Editing, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, region_messages};
+use pphigs::{BinHandoffWork, DisplayList, EditWork, PROGRAM_BYTES, Pass, RegionEnvelope, Share, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Received, Stage};
 use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId, SurfaceId};
 use std::cell::RefCell;
@@ -27,7 +27,7 @@ struct SlaveState {
 
 impl SlaveState {
     /// Counts a token of a context. After the last token, empties the context and returns true.
-    fn is_emptied(&mut self, context: usize, of: u16) -> bool {
+    fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
         if is_last {
@@ -99,9 +99,9 @@ async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> 
     let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
     let number = update.number;
     gp.begin(Stage::Edit, number, None);
-    gp.work(&Editing(&update.view)).await?;
+    gp.work(&EditWork(&update.view)).await?;
     gp.end(Stage::Edit, number, None);
-    tell_master(gp, config, &UpdateOrder::Edited(number)).await;
+    send_to_master(gp, config, &UpdateOrder::Edited(number)).await;
     Ok(update)
 }
 
@@ -138,7 +138,7 @@ async fn transform(
     let entries = pass.entries(config);
     state.borrow_mut().bins[context] = Some(pass);
     gp.end(Stage::Transform, number, surface);
-    tell_master(gp, config, &UpdateOrder::Transformed(number, entries)).await;
+    send_to_master(gp, config, &UpdateOrder::Transformed(number, entries)).await;
     Ok(())
 }
 
@@ -200,10 +200,10 @@ impl TokenBin {
         Some(Self { pass: Arc::clone(passes.face(face)?), context, face, region, envelope })
     }
 
-    fn handing(&self) -> Handing<'_> {
+    fn handing(&self) -> BinHandoffWork<'_> {
         let Self { pass, region, envelope, .. } = self;
         let (context, view) = (self.context as u8, self.face as u8);
-        Handing { pass, context, view, region: *region, envelope: *envelope }
+        BinHandoffWork { pass, context, view, region: *region, envelope: *envelope }
     }
 
     fn messages(&self) -> Vec<CommandList> {
@@ -238,14 +238,14 @@ fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId,
 /// Frees an update's commands and bins when this slave has seen all its tokens.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
     let context = context_of(token.update);
-    if state.borrow_mut().is_emptied(context, token.of) {
+    if state.borrow_mut().count_token(context, token.of) {
         gp.reserve(Account::Commands(context as u8), 0, None)?;
         gp.reserve(Account::Bins(context as u8), 0, None)?;
     }
     Ok(())
 }
 
-async fn tell_master(gp: &Gp, config: &CubeControlConfig, order: &UpdateOrder) {
+async fn send_to_master(gp: &Gp, config: &CubeControlConfig, order: &UpdateOrder) {
     let (words, body) = order.message();
     gp.send(config.master, words, body).await;
 }

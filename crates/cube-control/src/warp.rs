@@ -1,14 +1,14 @@
 //! Region warping: vertices are moved before a slave transforms them.
 
 use glam::DVec3;
-use priority_rendering::{Cell, Dealing, Falloff, PriorityError, RegionWarp};
+use priority_rendering::{Cell, CellAssignment, Falloff, PriorityError, RegionWarp};
 use pxpl5_wire::Word;
 
 /// Displacement of an update's vertices towards the slower memory, which was drawn from another position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
     /// Assignment of cells to memories.
-    pub dealing: Dealing,
+    pub dealing: CellAssignment,
     /// Decrease of the displacement with the distance from the border to the slower memory.
     pub falloff: Falloff,
     /// Distance from the border within which vertices are moved, in metres.
@@ -36,7 +36,7 @@ impl FaceWarp {
     }
 
     pub(crate) fn to_words(self) -> Vec<Word> {
-        let Dealing { home, side_m, inner_rings, ring_growth, memories } = self.dealing;
+        let CellAssignment { home, side_m, inner_rings, ring_growth, memories } = self.dealing;
         let falloff = Falloff::ALL.iter().position(|(_, falloff)| *falloff == self.falloff).unwrap_or_default();
         let cell = [home.x, home.z].map(|number| halves(number as u64)).concat();
         let counts = [inner_rings as Word | (ring_growth as Word) << 16, memories as Word, falloff as Word];
@@ -55,7 +55,7 @@ impl FaceWarp {
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();
         let [side_m, length_m, places @ ..] = &reals[..] else { return None };
         Some(Self {
-            dealing: Dealing {
+            dealing: CellAssignment {
                 home: Cell { x: cell(x_low, x_high), z: cell(z_low, z_high) },
                 side_m: *side_m,
                 inner_rings: (rings & 0xFFFF).into(),
@@ -85,7 +85,7 @@ pub(crate) mod tests {
 
     pub(crate) fn warp() -> FaceWarp {
         FaceWarp {
-            dealing: Dealing {
+            dealing: CellAssignment {
                 home: Cell { x: -3, z: 1 << 40 },
                 side_m: 5.0,
                 inner_rings: 1,

@@ -54,7 +54,7 @@ mod tests {
     use crate::warp::FaceWarp;
     use glam::{DVec3, Mat4, Vec3};
     use pphigs::{DisplayStructure, EyeView, FrameView, ModelEdit};
-    use priority_rendering::{Cell, Dealing, Falloff};
+    use priority_rendering::{Cell, CellAssignment, Falloff};
     use pxpl5_geometry::Culling;
     use pxpl5_wire::ViewNumber;
 
@@ -81,7 +81,8 @@ mod tests {
 
     /// Returns an update whose memory holds all structures but the third. An edit moves the fourth structure.
     fn update(number: u64) -> FaceUpdate {
-        let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
+        let dealing =
+            CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
         let edits = vec![ModelEdit { structure: 3, model: Mat4::IDENTITY }];
         FaceUpdate {

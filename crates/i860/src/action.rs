@@ -52,6 +52,7 @@ pub(crate) enum Core {
 
 impl Core {
     fn of(i: &Instruction) -> Core {
+        // The size of a floating-point access selects a specialized kind.
         match (i.op, i.size) {
             (Op::LdB, _) => Core::LoadByte,
             (Op::LdS, _) => Core::LoadShort,
@@ -145,11 +146,13 @@ impl Floating {
     fn of(d: &Decoded, i: &Instruction) -> Floating {
         const PIPELINED: bool = true;
         const DOUBLES: bool = true;
+        // A source may be the result that leaves the pipe, which the specialized kinds do not look for.
         if d.may_bypass() {
             return Floating::Any;
         }
         let doubles = i.has(Flags::SOURCE_DOUBLE);
         let alike = doubles == i.has(Flags::RESULT_DOUBLE);
+        // Operations with one precision have specialized kinds.
         match (i.op, i.has(Flags::PIPELINED), doubles) {
             (Op::Fmul, PIPELINED, DOUBLES) if alike => Floating::PipelinedMultiplyDoubles,
             (Op::Fadd, PIPELINED, DOUBLES) if alike => Floating::PipelinedAddDoubles,
@@ -184,6 +187,7 @@ pub(crate) struct Action {
 impl Action {
     /// Chooses the effects of a single instruction, or of a pair if `second` is its core half.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
+        // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());
         let core = second.or((!first.is_floating()).then_some(first)).filter(|core| !core.is_idle());
         Action {

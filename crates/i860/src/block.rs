@@ -36,6 +36,7 @@ impl Unit {
 
     fn single<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
         let first = decode_at(pc, code, bus)?;
+        // A D bit at an aligned address starts dual-instruction mode after the next instruction.
         let after = match (pc & 4 != 0, mode) {
             (true, Mode::Entering) => Mode::DualOnce,
             (false, _) if first.dual() => Mode::Entering,
@@ -50,6 +51,7 @@ impl Unit {
         }
         let first = decode_at(pc, code, bus)?;
         let second = decode_at(pc.wrapping_add(4), code, bus)?;
+        // The first half must be floating-point, the second must be core or `fnop`.
         if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
@@ -246,6 +248,7 @@ impl Block {
     /// Returns an address on the cache line of an instruction or pair, and the index of the first one after that line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
+        // Find the last line that begins at or before this instruction.
         let next = self.lines.iter().skip(1).position(|first| usize::from(*first) > number);
         let line = next.unwrap_or(self.lines.len() - 1);
         let end = self.lines.get(line + 1).map_or(usize::MAX, |first| usize::from(*first));

@@ -38,7 +38,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// Makes `len` zero bytes from address `base`.
+    /// Makes a memory of `len` zero bytes from address `base`.
     #[must_use]
     pub fn new(base: u32, len: usize) -> Ram {
         Ram { base, bytes: vec![0; len] }
@@ -83,6 +83,7 @@ impl Ram {
     }
 
     fn offset(&self, address: u32, len: usize) -> Result<usize, Unmapped> {
+        // Refuse ranges that begin below the memory or end after it.
         let at = address.wrapping_sub(self.base) as usize;
         let end = at.checked_add(len).ok_or(Unmapped)?;
         if address < self.base || end > self.bytes.len() { Err(Unmapped) } else { Ok(at) }

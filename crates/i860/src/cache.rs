@@ -82,6 +82,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];
+        // Empty ways are filled first.
         let way = ways.iter().position(|tag| *tag == 0).unwrap_or(random as usize % WAYS);
         let left = std::mem::replace(&mut ways[way], Self::tag(address));
         (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))

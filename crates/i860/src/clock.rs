@@ -1,4 +1,5 @@
-//! The clock: issue, freezes, caches and queues. It receives every executed block and changes no value of the program.
+//! The clock: issue, freezes, caches and queues. The clock receives every executed block and changes no value of the
+//! program.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -144,14 +145,14 @@ impl Clock {
     /// Counts the clocks of the executed part of a block.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
-        if !(accesses.all_held && self.repeat_all(block, execution)) {
-            self.pass_slowly(block, execution, accesses, bus);
+        if !(accesses.all_held && self.reuse_block_clocks(block, execution)) {
+            self.count_block(block, execution, accesses, bus);
         }
     }
 
     /// Counts the clocks of a block whose accesses or runs are not all remembered.
     #[inline(never)]
-    fn pass_slowly<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
+    fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
             self.common.profile.instructions += block.instructions_of(execution);
         } else if !self.repeats() {
@@ -168,6 +169,7 @@ impl Clock {
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).iter().enumerate().for_each(|(n, unit)| {
             let before = self.common.now;
+            // Each instruction or pair is fetched, issued and completed, unless it trapped.
             self.fetch(unit, bus);
             self.issue(unit);
             if !(execution.trapped && n == last) {
@@ -200,7 +202,7 @@ impl Clock {
     #[inline]
     pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();
-        if core.is_told() {
+        if core.affects_clock() {
             match core.instruction.op {
                 op if core.is_branch() => self.end_of_branch(op, taken),
                 Op::StC => self.common.charge(Freeze::ControlStore),
@@ -244,6 +246,7 @@ impl Clock {
     /// Issues a pair. Both halves wait for the longer freeze.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
+        // Find the longest wait of both halves.
         let mut longest = NO_WAIT;
         for d in [floating, core] {
             if self.board.may_wait(d) {
@@ -299,13 +302,14 @@ impl Clock {
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
-        self.hold_up(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
-        self.hold_up(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
+        // Some instructions wait for the first word of the miss, others for its last.
+        self.delay_hazard(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
+        self.delay_hazard(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
         Some(transfer)
     }
 
     /// Makes instructions of a hazard class wait until clock `until` of a running miss, if the freeze row applies.
-    fn hold_up(&mut self, hazard: u16, until: u64, why: Freeze) {
+    fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }
@@ -315,6 +319,7 @@ impl Clock {
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);
+        // A store that hits delays only a load right after it.
         if self.data.access(address, true) {
             self.board.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit, self.common.now);
         } else {

@@ -56,7 +56,7 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Stands still until a clock, and also for the rest of an arriving instruction line (row 1).
+    /// Freezes the processor until a clock, and also for the rest of an arriving instruction line (row 1).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -68,13 +68,13 @@ impl Common {
         }
     }
 
-    /// Stands still until an instruction arrives. This wait belongs to row 1a alone.
+    /// Freezes the processor until an instruction arrives. This wait belongs to row 1a alone.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Stands still for the extra clocks of an instruction miss during a data fill (row 1b).
+    /// Freezes the processor for the extra clocks of an instruction miss during a data fill (row 1b).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
@@ -94,7 +94,7 @@ impl Common {
         }
     }
 
-    /// Stands still for the constant part of a row.
+    /// Freezes the processor for the constant part of a row.
     #[inline]
     pub(crate) fn charge(&mut self, why: Freeze) {
         self.freeze_until(self.now + self.costs.clocks(why), why);
@@ -106,7 +106,7 @@ impl Common {
         self.bus.read(self.now, address, beats)
     }
 
-    /// Stands still while three bus requests are outstanding.
+    /// Freezes the processor while three bus requests are outstanding.
     pub(crate) fn await_address_pipe(&mut self) {
         if self.costs.applies(Freeze::AddressPipeFull) {
             self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);

@@ -21,7 +21,7 @@ fn delayed(taken: bool, target: u32) -> Flow {
 
 /// Returns the address after a branch's delay slot. The slot is a pair if the code after the branch is in
 /// dual-instruction mode.
-fn behind_slot(unit: &Unit) -> u32 {
+fn after_slot_address(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
 
@@ -29,6 +29,7 @@ impl Cpu {
     /// Executes a core instruction, or the core half of a pair.
     #[inline(always)]
     pub(crate) fn core<'a, B: Bus>(&mut self, a: &CoreAction, unit: impl Fn() -> &'a Unit, bus: &mut B) -> Flow {
+        // Integer operations return directly, because they cannot trap.
         let done = match a.does {
             Core::Nothing => return Flow::Next,
             Core::Integer => {
@@ -76,19 +77,21 @@ impl Cpu {
 
     fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
-        self.state.set_r(1, behind_slot(unit));
+        // r1 may be the target register, so the target was read first.
+        self.state.set_r(1, after_slot_address(unit));
         Flow::Delayed(target & !3)
     }
 
     #[inline]
     fn branch(&mut self, unit: &Unit) -> Flow {
         let i = &unit.core().instruction;
+        // Offsets count words from the instruction after the branch.
         let target = unit.core_pc().wrapping_add(4).wrapping_add((i.imm as u32) << 2);
         let condition = self.state.psr & psr::CC != 0;
         match i.op {
             Op::Br => Flow::Delayed(target),
             Op::Call => {
-                self.state.set_r(1, behind_slot(unit));
+                self.state.set_r(1, after_slot_address(unit));
                 Flow::Delayed(target)
             }
             Op::Bri => self.branch_indirect(i),
@@ -130,8 +133,10 @@ impl Cpu {
     fn return_from_trap(&mut self) {
         let old = self.state.psr;
         self.state.psr = old & !(psr::TRAPS | psr::DIM | psr::DS);
+        // Restore the user and interrupt bits of before the trap.
         self.state.set_psr_bit(psr::U, old & psr::PU != 0);
         self.state.set_psr_bit(psr::IM, old & psr::PIM != 0);
+        // The old mode of pairing returns after the delay slot.
         self.mode_after_slot = Some(match (old & psr::DIM != 0, old & psr::DS != 0) {
             (true, true) => Mode::DualOnce,
             (true, false) => Mode::Dual,

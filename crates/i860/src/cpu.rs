@@ -10,7 +10,7 @@ use crate::execution::Execution;
 use crate::flow::Flow;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
-use crate::shelf::Shelf;
+use crate::shelf::DecodedPrograms;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
 use crate::timing::Config;
 use crate::trap::{RunEnd, Trap, TrapCause};
@@ -137,7 +137,7 @@ impl Cpu {
     /// changes.
     ///
     /// All processors that use a shelf must have the same [`Config::freezes`].
-    pub fn open(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) {
+    pub fn open(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
         self.code = program.map_or_else(Code::new, |program| shelf.take(program));
         self.code_changed = false;
         self.time.exchange_numbers(&mut shelf.numbers);
@@ -146,7 +146,7 @@ impl Cpu {
 
     /// Returns the decoded program and its clocks to its shelf. Returns true if the shelf can reuse them.
     /// If a store has changed the program in memory, the decoded code is dropped and the result is false.
-    pub fn close(&mut self, shelf: &mut Shelf, program: Option<&Arc<Program>>) -> bool {
+    pub fn close(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut shelf.numbers);
         shelf.cache_states = self.time.fetch.states();
         let code = std::mem::replace(&mut self.code, Code::new());
@@ -200,7 +200,7 @@ impl Cpu {
         self.execute(&mut block, units, bus);
         // Changes of dirbase take effect after the instruction that wrote them.
         if let Some(value) = self.directory_base.take() {
-            self.obey_directory_base(value);
+            self.apply_directory_base(value);
         }
         self.code.put(pc, block);
         // After a store into decoded code, all blocks must be decoded again.

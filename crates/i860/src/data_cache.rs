@@ -44,6 +44,7 @@ impl DataCache {
         let count = addresses.len().min(accessing.len());
         let (addresses, accessing) = (&addresses[..count], &accessing[..count]);
         let mut next = from;
+        // Go on while the accesses hit.
         while next < count {
             let unit = accessing[next];
             let number = usize::from(unit.number);
@@ -80,6 +81,7 @@ impl DataCache {
         if self.holds(address) {
             return None;
         }
+        // Devices and the ring window are read without a line fill.
         let transfer = match bus.is_cacheable(address) {
             true => self.fill_line(address, stores, common),
             false => common.read_data(address, size.div_ceil(BUS_BYTES)),
@@ -92,6 +94,7 @@ impl DataCache {
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);
+        // Every fill takes a random number, also if a way is empty.
         let random = common.chance.next();
         if let Some(victim) = self.0.fill(address, random) {
             stores.write_back(transfer.last, victim, common);

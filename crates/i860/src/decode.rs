@@ -36,6 +36,7 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     i.dest = field(word, 16);
     i.src1 = field(word, 11);
     i.src2 = field(word, 21);
+    // `fnop` is encoded as a core instruction.
     if word & !D_BIT == FNOP {
         i.flags = Flags(0).with(Flags::DUAL, word & D_BIT != 0);
         return Ok(i);
@@ -98,6 +99,7 @@ fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
 }
 
 fn sized(word: u32, i: &mut Instruction) -> Option<()> {
+    // The low bits of the offset field hold increment and size.
     let low = word & 7;
     i.flags = i.flags.with(Flags::AUTOINCREMENT, low & 1 != 0);
     i.size = match (low >> 1 & 1, low >> 2) {
@@ -110,6 +112,7 @@ fn sized(word: u32, i: &mut Instruction) -> Option<()> {
         i.size = 0;
         i.imm = signed16(word) & !7;
     }
+    // Reject forms that the i860 XR does not have.
     let xp_only = i.op == Op::Pfld && i.size == 16;
     let not_d = i.op == Op::Pst && i.size != 8;
     (!xp_only && !not_d).then_some(())
@@ -127,6 +130,7 @@ fn escape(word: u32, mut i: Instruction) -> Option<Instruction> {
 }
 
 fn control(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
+    // Offsets of br, call and the branches on CC have 26 bits.
     let long_offset = ((word << 6) as i32) >> 6;
     (i.op, i.imm) = match op {
         0x10 => (Op::Bri, 0),
@@ -165,6 +169,7 @@ fn integer(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
         0x3F => Op::Xorh,
         _ => return None,
     };
+    // Odd operation codes have an immediate; it is unsigned for logical operations.
     if op & 1 == 1 {
         i.flags = i.flags.with(Flags::IMMEDIATE, true);
         i.imm = if op >= 0x30 { (word & 0xFFFF) as i32 } else { signed16(word) };
@@ -219,6 +224,7 @@ fn floating_op(code: u32, result_double: bool) -> Option<Op> {
 }
 
 fn floating_is_legal(i: &Instruction, pipelined: bool, source: bool, result: bool) -> bool {
+    // Few operations convert doubles to singles.
     let narrowing = source && !result;
     match i.op {
         Op::Pfgt | Op::Pfle | Op::Pfeq => pipelined,

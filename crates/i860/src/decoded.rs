@@ -98,7 +98,7 @@ impl Decoded {
     /// Returns true if the instruction accesses data, branches or is `st.c`. Only these cost clocks that depend on
     /// their execution.
     #[inline]
-    pub(crate) fn is_told(&self) -> bool {
+    pub(crate) fn affects_clock(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
@@ -123,6 +123,7 @@ fn marks(i: &Instruction) -> u8 {
     let floating = i.is_floating();
     let (first, second) = source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
+    // Compare register pairs, because doubles occupy two registers.
     let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
     on(mark::FLOATING, floating)
         | on(mark::BRANCH, i.is_branch())
@@ -248,6 +249,7 @@ fn floating_arms(i: &Instruction) -> u16 {
 /// Returns the register of [`Decoded::multiplier_source`]. In a dual operation the first source goes to the multiplier
 /// for four of the sixteen data paths.
 fn multiplier_source(i: &Instruction) -> u8 {
+    // Only operations whose first source goes to the multiplier matter to row 9.
     let reads_first = match i.op {
         Op::Fmul | Op::Fmul3 | Op::Fmlow => true,
         Op::DualOp => matches!(i.imm & 15, 9 | 11 | 13 | 15),

@@ -12,6 +12,7 @@ use crate::syntax::{CONTROL_REGISTERS, Syntax};
 #[must_use]
 pub fn disassemble(word: u32, pc: u32) -> String {
     let text = decode(word).ok().map(|i| text(&i, pc));
+    // Print the text only if it assembles to the same word.
     let faithful = text.filter(|text| instruction_word(text, pc).ok() == Some(word));
     faithful.unwrap_or_else(|| format!(".long {word:#010x}"))
 }
@@ -42,6 +43,7 @@ fn operands(i: &Instruction, pc: u32) -> String {
     let a = i.src1;
     let b = i.src2;
     let d = i.dest;
+    // Branches print their target address, not their offset.
     let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
     let first = match i.has(Flags::IMMEDIATE) {
         true if i.op == Op::Bte || i.op == Op::Btne => a.to_string(),

@@ -77,6 +77,7 @@ impl Dram {
             if interval == 0 || clocks == 0 || *due > now {
                 continue;
             }
+            // Of several interruptions since the last request, only the latest one costs time.
             let missed = (now - *due) / interval;
             let latest = *due + missed * interval;
             self.free = self.free.max(latest) + clocks;
@@ -97,6 +98,7 @@ impl Dram {
 
     fn finish(&mut self, transfer: Transfer) -> Transfer {
         self.data_end = self.data_end.max(transfer.last);
+        // The address pipe holds the latest requests.
         self.outstanding.rotate_left(1);
         self.outstanding[BUS_DEPTH - 1] = self.data_end;
         transfer
@@ -113,6 +115,7 @@ impl Dram {
         let t = self.timing;
         let first = start + if hit { t.first_hit } else { t.first_miss };
         let last = first + u64::from(beats - 1) * t.next;
+        // Opening a row delays later requests too.
         let opening = if hit { 0 } else { t.first_miss.saturating_sub(t.first_hit) };
         self.free = start + opening + u64::from(beats) * t.next;
         self.finish(Transfer { first, last, step: t.next })

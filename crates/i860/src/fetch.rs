@@ -4,11 +4,11 @@ use crate::block::Block;
 use crate::bus::Bus;
 use crate::cache::InstructionTags;
 use crate::common::Common;
-use crate::memo::Filling;
+use crate::memo::ArrivingLine;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Value of [`Fetch::line`] when no line is held.
+/// Value of `Fetch::line` when no line is held.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 /// Bus transfers of one cache line.
@@ -56,9 +56,9 @@ impl Fetch {
 
     /// Returns the rest of the instruction line that is arriving.
     #[inline]
-    pub(crate) fn filling(&self, common: &Common) -> Filling {
+    pub(crate) fn filling(&self, common: &Common) -> ArrivingLine {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
-        Filling { clocks, first: if clocks == 0 { 0 } else { self.first } }
+        ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
     /// Continues the numbering of cache states after `latest`, so that states of different processors have different
@@ -87,11 +87,11 @@ impl Fetch {
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {
-            self.fetch_slowly(pc, translation, common, bus);
+            self.fetch_new_line(pc, translation, common, bus);
         }
     }
 
-    fn fetch_slowly<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
+    fn fetch_new_line<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }
@@ -110,6 +110,7 @@ impl Fetch {
     }
 
     fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
+        // Row 1b applies if a data fill runs when the miss begins.
         common.profile.instruction_misses += 1;
         let is_behind_data = common.now < common.data_fill_end;
         common.await_address_pipe();
@@ -129,6 +130,7 @@ impl Fetch {
         let random = common.chance.next();
         self.cache.fill(pc, random);
         let line = common.bus.read(common.now, pc, BEATS);
+        // The needed word arrives first, the others follow in cyclic order.
         for beat in 0..BEATS {
             self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.arrival(beat);
         }

@@ -30,6 +30,7 @@ impl Cpu {
             Floating::Subtract => self.scalar_single(Subtract, action, from),
             Floating::Nothing => {}
             Floating::Singles | Floating::Doubles | Floating::Any => {
+                // The other kinds read their operation from the instruction.
                 self.by_instruction(&unit().first.instruction, from);
             }
         }
@@ -38,6 +39,7 @@ impl Cpu {
     #[inline(always)]
     fn pipelined_single(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
         let result = PipeStage { bits: u64::from(self.single(operation, from)), double: false };
+        // The destination receives the oldest result, and the new one enters the pipe.
         let leaving = push(self.pipe_of(operation), 2, result);
         self.state.set_f(action.dest, leaving);
     }
@@ -45,6 +47,7 @@ impl Cpu {
     #[inline(always)]
     fn pipelined_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
         let bits = self.double(operation, from);
+        // The multiplier has two stages for doubles, the adder three.
         let last = if operation == Operation::Multiply { 1 } else { 2 };
         let leaving = push(self.pipe_of(operation), last, PipeStage { bits, double: true });
         self.state.set_f(action.dest, leaving);
@@ -86,7 +89,7 @@ impl Cpu {
             Op::Fnop => {}
             Op::DualOp => self.dual_operation(i, from),
             Op::Fmul => self.multiply(i, from),
-            Op::Fmul3 => self.multiply_through_three_stages(i, from),
+            Op::Fmul3 => self.multiply_three_stages(i, from),
             Op::Fadd => self.add(i, Operation::Add, from),
             Op::Fsub => self.add(i, Operation::Subtract, from),
             Op::Pfgt | Op::Pfle | Op::Pfeq => self.compare(i, from),
@@ -117,7 +120,7 @@ impl Cpu {
         }
     }
 
-    fn multiply_through_three_stages(&mut self, i: &Instruction, from: Operands) {
+    fn multiply_three_stages(&mut self, i: &Instruction, from: Operands) {
         let bits = self.double(Operation::Multiply, from);
         let leaving = push(&mut self.state.multiplier, 2, PipeStage { bits, double: true });
         self.state.set_f(i.dest, leaving);
@@ -181,6 +184,7 @@ impl Cpu {
             _ => self.seeds.reciprocal_root(x),
         };
         let bits = if r { y } else { u64::from(narrow(y, self.flush_to_zero())) };
+        // A seed goes through the multiplier and destroys its results.
         lose(&mut self.state.multiplier);
         self.state.set_f(i.dest, PipeStage { bits, double: r });
     }

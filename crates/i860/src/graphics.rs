@@ -34,6 +34,7 @@ impl Cpu {
             Op::Fzchks => self.check_z(a, b, 16),
             _ => std::mem::take(&mut self.state.merge) | a,
         };
+        // All results except of fiadd.ss and fisub.ss are doubles.
         let double = !matches!(i.op, Op::Fiadd | Op::Fisub) || i.has(Flags::RESULT_DOUBLE);
         self.graphics_result(i, PipeStage { bits, double });
     }
@@ -64,6 +65,7 @@ impl Cpu {
     fn check_z(&mut self, a: u64, b: u64, width: u32) -> u64 {
         let fields = 64 / width;
         let (smaller, passed) = z_check(a, b, width);
+        // The new bits enter psr.PM from above, for several checks in a row.
         let mask = self.state.pixel_mask() >> fields | passed << (8 - fields);
         self.state.set_pixel_mask(mask);
         self.state.merge = 0;

@@ -97,6 +97,7 @@ impl Cpu {
 
     /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
+        // User mode may change only a part of the bits.
         let user = self.state.psr & psr::U != 0;
         match register {
             1 => self.state.psr = merge(self.state.psr, value, if user { psr::USER } else { !0 }),
@@ -116,7 +117,7 @@ impl Cpu {
 
     /// Applies a write of the directory base to caches and translation, after its own time was counted.
     #[cold]
-    pub(crate) fn obey_directory_base(&mut self, value: u32) {
+    pub(crate) fn apply_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
             self.code_changed = true;
             self.time.invalidate_instruction_cache();

@@ -55,14 +55,15 @@
 //! All rows are *assumed* (recollections of Intel's list). Published figures are tests: 2 and 1.5 operations per clock,
 //! 39 clocks for three reciprocal roots, about 48 clocks for a square root. One published figure is a tree-traversal
 //! loop of 117 instructions in 106 clocks. Its description does not suffice to write the same code. The test runs a
-//! loop of the same shape (pairs, odd entry, taken `bnc.t`). It therefore checks the issue rules and not that program.
+//! loop of the same shape (pairs, odd entry, taken `bnc.t`). The test therefore checks the issue rules and not that
+//! program.
 //!
 //! # Speed
 //!
 //! Code is decoded once, as basic blocks: a block goes from an address to the next branch with its delay slot. The
 //! processor executes a block, and the clock then counts its time.
 //!
-//! A *run* is a part of a block whose instructions and data are all in the caches. It uses neither the bus nor the
+//! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
 //! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
 //! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
 //! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this on.
@@ -75,14 +76,14 @@
 //! larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with every row switched. The
 //! benchmarks of `crates/pphigs` measure the gain for these kernels.
 //!
-//! A [`Shelf`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
+//! A [`DecodedPrograms`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
 //! ([`Cpu::watch`]) and address translation always count every instruction.
 //!
 //! # Conformance
 //!
-//! 2,175 test vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). They decide
-//! three questions that the manuals leave open. `faddz` is one 64-bit addition. Scalar `ftrunc` writes only the low
-//! word, and `fix` clears the high word. A dual operation that reloads K or T uses their old values.
+//! 2,175 test vectors of other functional models pass (tests/conformance.rs; module and feature `vectors`). The vectors
+//! decide three questions that the manuals leave open. `faddz` is one 64-bit addition. Scalar `ftrunc` writes only the
+//! low word, and `fix` clears the high word. A dual operation that reloads K or T uses their old values.
 //!
 //! # Not modelled
 //!
@@ -159,7 +160,7 @@ pub use instruction::{Flags, Instruction, Op};
 pub use mnemonic::mnemonic;
 pub use profile::{AddressProfile, Profile};
 pub use seed::SeedTable;
-pub use shelf::Shelf;
+pub use shelf::DecodedPrograms;
 pub use state::State;
 pub use timing::{CHIP_PATH, Config};
 pub use trap::{RunEnd, Trap, TrapCause};

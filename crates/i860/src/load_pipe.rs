@@ -15,6 +15,7 @@ pub(crate) struct LoadPipe {
 impl LoadPipe {
     /// Starts a load after the data of the oldest one have arrived.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
+        // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
         if oldest > common.now && common.costs.applies(Freeze::LoadPipeFull) {
             common.freeze_until(oldest + common.costs.clocks(Freeze::LoadPipeFull), Freeze::LoadPipeFull);

@@ -1,7 +1,7 @@
 //! Memoization: clocks of repeated runs of code, reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
-//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. It leaves the bus, the
+//! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
 //! of an arriving instruction line, and the branches and traps of its execution.
 //!
@@ -9,7 +9,7 @@
 //! leave the caches are counted with the full scoreboard.
 
 use crate::profile::Profile;
-use crate::scoreboard::{Leftover, Scoreboard};
+use crate::scoreboard::{PendingWaits, Scoreboard};
 use crate::timing::{FREEZES, N_FREEZES};
 use rustc_hash::FxHashMap;
 
@@ -35,8 +35,8 @@ impl Number {
 /// All distinct scoreboard states with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
-    numbers: FxHashMap<Leftover, Number>,
-    leftovers: Vec<Leftover>,
+    numbers: FxHashMap<PendingWaits, Number>,
+    leftovers: Vec<PendingWaits>,
 }
 
 /// The memory of scoreboard states, and the number of the current state.
@@ -62,15 +62,17 @@ impl Memo {
     }
 
     /// Returns the number of a scoreboard state, and assigns a new number if there is room.
-    pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: Filling) -> Option<Number> {
+    pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: ArrivingLine) -> Option<Number> {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
         }
+        // The state must fit into a few bits; otherwise it gets no number.
         let left = written.leftover(now, MOST_CLOCKS, [fill.clocks as u8, fill.first])?;
         let Numbers { numbers, leftovers } = &mut *self.numbers;
         if let Some(number) = numbers.get(&left) {
             return Some(*number);
         }
+        // A full table assigns no new numbers.
         if leftovers.len() == MOST_NUMBERS {
             return None;
         }
@@ -91,7 +93,7 @@ impl Memo {
     /// Stops using the number of the current state. Returns the state that the [`Scoreboard`] must be restored from, or
     /// `None` if the [`Scoreboard`] is up to date.
     #[inline]
-    pub(crate) fn leave(&mut self) -> Option<&Leftover> {
+    pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
     }
 }
@@ -100,7 +102,7 @@ const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
 /// The rest of an instruction line that is arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Filling {
+pub(crate) struct ArrivingLine {
     /// Clocks to the last transfer; 0 if no line is arriving.
     pub(crate) clocks: u64,
     /// Position, within the line, of the transfer that arrives first.
@@ -136,20 +138,20 @@ impl Run {
 
 /// Clocks waited by cause: the cause in the lower five bits of each entry, zero after the last entry.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Waited([u16; Waited::MOST]);
+pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
-impl Waited {
+impl WaitedClocks {
     const CAUSE_BITS: u32 = 5;
     /// Greatest number of causes of waits in one run.
     const MOST: usize = 6;
 
     /// Returns the clocks waited between two profiles. Returns `None` if there are too many causes or if one has too
     /// many clocks for its entry.
-    fn between(before: &Profile, after: &Profile) -> Option<Waited> {
+    fn between(before: &Profile, after: &Profile) -> Option<WaitedClocks> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
-        let mut all = Waited::default();
+        let mut all = WaitedClocks::default();
         for (number, (why, clocks)) in clocks.filter(|(_, clocks)| *clocks != 0).enumerate() {
-            *all.0.get_mut(number)? = u16::try_from(clocks << Waited::CAUSE_BITS | why as u64).ok()?;
+            *all.0.get_mut(number)? = u16::try_from(clocks << WaitedClocks::CAUSE_BITS | why as u64).ok()?;
         }
         Some(all)
     }
@@ -161,8 +163,8 @@ impl Waited {
             if wait == 0 {
                 break;
             }
-            if let Some(sum) = frozen.get_mut(usize::from(wait) % (1 << Waited::CAUSE_BITS)) {
-                *sum += u64::from(wait >> Waited::CAUSE_BITS);
+            if let Some(sum) = frozen.get_mut(usize::from(wait) % (1 << WaitedClocks::CAUSE_BITS)) {
+                *sum += u64::from(wait >> WaitedClocks::CAUSE_BITS);
             }
         }
     }
@@ -180,7 +182,7 @@ pub(crate) struct RememberedClocks {
     /// Cache line of the last fetch.
     pub(crate) line: u32,
     /// Clocks waited in the run, by cause.
-    pub(crate) waited: Waited,
+    pub(crate) waited: WaitedClocks,
 }
 
 impl RememberedClocks {
@@ -190,13 +192,13 @@ impl RememberedClocks {
         clocks: 0,
         instructions: 0,
         line: 0,
-        waited: Waited([0; Waited::MOST]),
+        waited: WaitedClocks([0; WaitedClocks::MOST]),
     };
 
     /// Makes the entry of a run from its clocks and from the profiles before and after it. Returns `None` if a number
     /// is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
-        let waited = Waited::between(before, after)?;
+        let waited = WaitedClocks::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
         Some(RememberedClocks { run, exit, clocks: u16::try_from(clocks).ok()?, instructions, line, waited })
     }

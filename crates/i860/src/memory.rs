@@ -50,6 +50,7 @@ impl Cpu {
         bus: &mut B,
     ) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, SIZE)?;
+        // Bytes and shorts are sign-extended.
         let value = match SIZE {
             4 => self.read(bus, address, 4)? as u32,
             2 => self.read(bus, address, 2)? as i16 as u32,
@@ -134,9 +135,11 @@ impl Cpu {
     ) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, SIZE)?;
         let bits = self.read(bus, address, SIZE)?;
+        // The destination receives the oldest load, and the new one enters the pipe.
         let [first, second, leaving] = self.state.load;
         self.state.set_f(a.dest, leaving);
         self.state.load = [PipeStage { bits, double: SIZE == 8 }, first, second];
+        // A pipelined load bypasses the cache, so it never counts as a hit.
         self.accesses.all_held = false;
         self.accessed(a, address, false);
         Ok(Flow::Next)
@@ -151,6 +154,7 @@ impl Cpu {
         let pixels = 8 / size;
         let mask = self.state.pixel_mask();
         let value = self.state.f64_bits(a.dest);
+        // Each pixel whose mask bit is set is one write.
         for n in (0..pixels).filter(|n| mask >> n & 1 != 0) {
             self.write(bus, address + n * size, size, value >> (8 * n * size))?;
         }

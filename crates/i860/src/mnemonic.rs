@@ -102,6 +102,7 @@ fn floating_name(op: Op) -> &'static str {
 }
 
 fn path_name(i: &Instruction) -> String {
+    // Dual operations are named by data path, with p or s for the sign.
     let table = &PATHS[usize::from(!i.has(Flags::PIPELINED))];
     let sign = if i.imm & 16 != 0 { "s" } else { "p" };
     table[(i.imm & 15) as usize].replace('_', sign)
@@ -150,6 +151,7 @@ pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     static TABLE: OnceLock<BTreeMap<String, Instruction>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let mut table = BTreeMap::new();
+        // The first word of each name decides its fields.
         for i in every_word().filter_map(|word| decode(word).ok()).filter(is_canonical) {
             let name = mnemonic(&i);
             let plain = Flags(i.flags.0 & !(Flags::IMMEDIATE.0 | Flags::AUTOINCREMENT.0));

@@ -42,6 +42,7 @@ fn read_any(state: &State, d: &Decoded) -> Operands {
 }
 
 fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Operands {
+    // A scalar instruction has no result in the pipe to pass on.
     let Some(out) = leaving(state, i) else {
         return Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) };
     };
@@ -81,6 +82,7 @@ fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStag
         return state.f_bits(n, double);
     }
     let low = usize::from(dest & 30);
+    // Put the leaving result over the old value of its register or pair.
     let mut pair = [state.f[low], state.f[low + 1]];
     if leaving.double {
         pair = [leaving.bits as u32, (leaving.bits >> 32) as u32];

@@ -95,6 +95,7 @@ impl AddressProfile {
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);
+        // A label ends where the next one begins.
         let ends = labels.iter().skip(1).map(|next| next.1).chain([end]);
         labels.iter().zip(ends).map(|((name, begin), end)| (*name, self.clocks_between(*begin, end))).collect()
     }

@@ -45,11 +45,12 @@ impl Clock {
     /// Reuses the clocks of a block whose accesses all hit. Returns false if its code is not in the cache, or if it is
     /// not remembered as one run.
     #[inline]
-    pub(crate) fn repeat_all(&mut self, block: &mut Block, execution: Execution) -> bool {
+    pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
         if !self.holds(block) {
             return false;
         }
+        // The whole block is one run, from its first place to its last.
         let to = PLACES * (execution.units + usize::from(execution.slot));
         let continues = entry.is_filling() && self.fetch.is_in_line(block.pc);
         let run = Run::new(entry, [0, to], [execution.taken, execution.trapped, continues]);
@@ -73,6 +74,7 @@ impl Clock {
         let whole = self.holds(block);
         while course.at < PLACES * units {
             match self.number() {
+                // With a number the next run can be remembered, else one instruction or pair is counted.
                 Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
                 None => {
                     let to = (course.at / PLACES + 1) * PLACES;
@@ -128,14 +130,14 @@ impl Clock {
         // The access that ended the run leaves the cache and is counted.
         if missing.is_some() {
             let address = course.accesses[course.accessed];
-            self.go_past(&block.accessing[course.accessed], address, bus);
+            self.count_cache_exit(&block.accessing[course.accessed], address, bus);
             course.accessed += 1;
         }
     }
 
     /// Counts an access that leaves the cache.
     #[inline]
-    fn go_past<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
+    fn count_cache_exit<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
         if !unit.is_store {
             self.write_board();
             return self.access(unit.access, address, bus);
@@ -172,6 +174,7 @@ impl Clock {
         while course.at < to {
             let number = course.at / PLACES;
             let unit = block.unit(number);
+            // Fetch, issue and completion each advance the place by one.
             match course.at % PLACES {
                 0 => self.fetch(unit, bus),
                 FETCHED => self.issue(unit),
@@ -202,6 +205,7 @@ impl Clock {
     /// Counts the clocks of a run and remembers them for later executions.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
+        // Count the run with the full rules and compare the profiles before and after.
         let began = self.common.now;
         let before = self.common.profile.clone();
         self.advance(block, course, run.end(), bus);

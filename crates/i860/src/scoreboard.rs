@@ -49,14 +49,14 @@ impl Left {
     }
 }
 
-/// Greatest number of waits in a [`Leftover`].
+/// Greatest number of waits in a [`PendingWaits`].
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
 /// The pending waits of a scoreboard relative to a clock: a compact form of its state.
 ///
 /// Two scoreboards with the same leftover impose the same waits on all later instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Leftover {
+pub(crate) struct PendingWaits {
     /// Packed waits in the order of [`Left::place`], the first one in the lowest bits; zero above the last.
     waits: u128,
     graphics_result: u64,
@@ -116,12 +116,18 @@ impl Scoreboard {
 
     /// Returns the waits that are pending at `now`, together with `beside`.
     /// Returns `None` if there are too many waits, or if one lasts longer than `most` clocks.
-    pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<Leftover> {
+    pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<PendingWaits> {
         if self.latest > now + u64::from(most) {
             return None;
         }
-        let mut left =
-            Leftover { waits: 0, last_result: NO_RESULT, scalar_double: false, graphics_result: 0, stored: 0, beside };
+        let mut left = PendingWaits {
+            waits: 0,
+            last_result: NO_RESULT,
+            scalar_double: false,
+            graphics_result: 0,
+            stored: 0,
+            beside,
+        };
         let mut count = 0;
         // Pack each wait that has not ended.
         let mut add = |place: u8, wait: Wait| {
@@ -153,7 +159,7 @@ impl Scoreboard {
     }
 
     /// Restores the scoreboard from its pending waits `left` at clock `now`.
-    pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
+    pub(crate) fn restore(&mut self, left: &PendingWaits, now: u64) {
         self.pending = 0;
         self.armed = 0;
         self.latest = 0;
@@ -199,6 +205,7 @@ impl Scoreboard {
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
+        // Of the hazards that matter to the instruction, find the longest wait.
         while bits != 0 {
             let n = bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -235,14 +242,14 @@ impl Scoreboard {
             return NO_WAIT;
         }
         match 1u16 << n {
-            hazard::SCALAR => self.behind_scalar(wait, &d.instruction),
-            hazard::GRAPHICS => self.behind_graphics(wait, d),
-            hazard::STORED => self.behind_store(wait, &d.instruction),
+            hazard::SCALAR => self.wait_after_scalar(wait, &d.instruction),
+            hazard::GRAPHICS => self.wait_after_graphics(wait, d),
+            hazard::STORED => self.wait_after_store(wait, &d.instruction),
             _ => wait,
         }
     }
 
-    fn behind_scalar(&self, mut wait: Wait, i: &Instruction) -> Wait {
+    fn wait_after_scalar(&self, mut wait: Wait, i: &Instruction) -> Wait {
         let floating = i.is_floating() && i.op != Op::Fxfr;
         if floating && i.has(Flags::SOURCE_DOUBLE) != self.scalar_double {
             wait.until += self.costs.clocks(Freeze::ScalarPrecisionChange);
@@ -254,7 +261,7 @@ impl Scoreboard {
         wait
     }
 
-    fn behind_graphics(&self, wait: Wait, d: &Decoded) -> Wait {
+    fn wait_after_graphics(&self, wait: Wait, d: &Decoded) -> Wait {
         let why = if d.instruction.uses_graphics() { Freeze::GraphicsToGraphics } else { Freeze::GraphicsToFloating };
         if d.reads & self.graphics_result == 0 {
             return NO_WAIT;
@@ -262,7 +269,7 @@ impl Scoreboard {
         Wait { until: wait.until - 1 + self.costs.clocks(why), why }
     }
 
-    fn behind_store(&self, wait: Wait, i: &Instruction) -> Wait {
+    fn wait_after_store(&self, wait: Wait, i: &Instruction) -> Wait {
         let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
         if float_mask(i.dest, bytes) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
     }
@@ -289,6 +296,7 @@ impl Scoreboard {
 
     fn arm(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
+        // Row 9 needs the result of the last floating-point instruction only.
         if d.arms & arm::FLOATING_RESULT != 0 {
             self.note_result(i, now);
         } else if d.is_floating() && i.op != Op::Fnop {
@@ -312,6 +320,7 @@ impl Scoreboard {
     pub(crate) fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
         self.armed |= bit;
         self.latest = self.latest.max(until);
+        // A new hazard of a kind replaces the old one.
         self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
     }
 
@@ -328,6 +337,7 @@ impl Scoreboard {
     // Marks the destination of a load or seed as not ready. A miss that takes longer stays in force.
     fn arm_destination(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
+        // The row depends on the kind of the result.
         let (mask, why) = match i.op {
             Op::Call | Op::Calli => (1 << 1, Freeze::LoadUse),
             Op::LdB | Op::LdS | Op::LdL | Op::LdC | Op::Fxfr => (1 << i.dest, Freeze::LoadUse),
@@ -338,6 +348,7 @@ impl Scoreboard {
             _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
         };
         let until = now + self.costs.clocks(why);
+        // A load that missed is ready later than row 6 says.
         let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
         if !(missed && why == Freeze::LoadUse) {
             self.set_ready(mask, until, why);

@@ -1,6 +1,6 @@
 //! The seeds of frcp (reciprocal) and frsqr (reciprocal square root).
 //!
-//! The chip's table is not public. It is only known that the fraction error stays below 2^-7, so the user chooses a
+//! The chip's table is not public. The fraction error is known to stay below 2^-7, so the user chooses a
 //! table. Programs that refine by Newton steps differ by the last bit or two between the tables, never in their clocks.
 
 use crate::arithmetic::{narrow, widen};
@@ -62,6 +62,7 @@ impl SeedTable {
 
     fn apply(self, x: f64, exact: impl Fn(f64) -> f64) -> u64 {
         let value = exact(x);
+        // Zero, infinity, NaN and denormal results are returned without a cut.
         if !is_finite_nonzero(value) || value.to_bits() & !(1 << 63) <= FRACTION {
             return value.to_bits();
         }

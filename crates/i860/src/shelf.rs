@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// one processor has decoded and counted need not be decoded again by the others ([`Cpu::open`](crate::Cpu::open),
 /// [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
-pub struct Shelf {
+pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their code; `None` while a processor uses the code.
     codes: Vec<(Arc<Program>, Option<Code>)>,
@@ -20,20 +20,21 @@ pub struct Shelf {
     pub(crate) cache_states: u64,
 }
 
-impl fmt::Debug for Shelf {
+impl fmt::Debug for DecodedPrograms {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Shelf").field("programs", &self.codes.len()).finish_non_exhaustive()
     }
 }
 
-impl Shelf {
+impl DecodedPrograms {
     /// Makes a shelf without programs.
     #[must_use]
-    pub fn new() -> Shelf {
-        Shelf::default()
+    pub fn new() -> DecodedPrograms {
+        DecodedPrograms::default()
     }
 
     fn place(&mut self, program: &Arc<Program>) -> &mut Option<Code> {
+        // Programs are compared by address, since one program is shared by all processors.
         let known = self.codes.iter().position(|(known, _)| Arc::ptr_eq(known, program));
         let at = known.unwrap_or_else(|| {
             self.codes.push((Arc::clone(program), None));

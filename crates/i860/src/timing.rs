@@ -11,68 +11,68 @@ parameters::parameter_table! {
     /// Where no published figure narrows a value, its range is one clock less to one clock more, because the list is
     /// quoted from memory.
     pub struct FreezeClocks {
-        /// Row 1a: instruction-cache miss.
+        /// Cost of freeze row 1a: instruction-cache miss.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
-        /// Row 1b: instruction-cache miss while a data-cache fill runs.
+        /// Cost of freeze row 1b: instruction-cache miss while a data-cache fill runs.
         instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 2: use of an integer-load destination that missed.
+        /// Cost of freeze row 2: use of an integer-load destination that missed.
         load_miss_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 3: fld miss.
+        /// Cost of freeze row 3: fld miss.
         floating_load_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 4: call, calli, ixfr, fxfr, ld.c, st.c while a data-cache fill runs.
+        /// Cost of freeze row 4: call, calli, ixfr, fxfr, ld.c, st.c while a data-cache fill runs.
         transfer_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 5: load, store or pfld while a data-cache fill runs.
+        /// Cost of freeze row 5: load, store or pfld while a data-cache fill runs.
         access_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 6: destination of ld, ld.c, call, calli, fxfr used by the next instruction.
+        /// Cost of freeze row 6: destination of ld, ld.c, call, calli, fxfr used by the next instruction.
         load_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 7: destination of fld, pfld, ixfr used within two instructions.
+        /// Cost of freeze row 7: destination of fld, pfld, ixfr used within two instructions.
         floating_load_use: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; period matrix code issues an extra operation because loads need time";
-        /// Row 8: bc, bnc, bc.t, bnc.t right after addu, adds, subu, subs or a compare.
+        /// Cost of freeze row 8: bc, bnc, bc.t, bnc.t right after addu, adds, subu, subs or a compare.
         condition_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 9: multiplier operation whose first source is the result of the operation before.
+        /// Cost of freeze row 9: multiplier operation whose first source is the result of the operation before.
         multiplier_first_source: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10a: floating-point operation or fst while a scalar fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or
-        /// fmul.sd is in flight.
+        /// Cost of freeze row 10a: floating-point operation or fst while a scalar fadd, fsub, fix, ftrunc, famov,
+        /// fmlow, fmul.ss or fmul.sd is in flight.
         scalar_busy: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; a measured square root of 48.4 clocks needs it";
-        /// Row 10b: floating-point operation or fst while a scalar fmul.dd is in flight.
+        /// Cost of freeze row 10b: floating-point operation or fst while a scalar fmul.dd is in flight.
         scalar_double_multiply_busy: 3, "clocks", Assumed, 2..=4 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10c: added to row 10a or 10b when the precision changes.
+        /// Cost of freeze row 10c: added to row 10a or 10b when the precision changes.
         scalar_precision_change: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 10d: added to row 10a or 10b when the new operation is pipelined and has a destination.
+        /// Cost of freeze row 10d: added to row 10a or 10b when the new operation is pipelined and has a destination.
         scalar_then_pipelined: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 11: multiplier operation right after a double-precision multiply.
+        /// Cost of freeze row 11: multiplier operation right after a double-precision multiply.
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
-        /// Row 12: TLB miss (only with address translation on).
+        /// Cost of freeze row 12: TLB miss (only with address translation on).
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 13: pfld with three outstanding.
+        /// Cost of freeze row 13: pfld with three outstanding.
         load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 14: pfld that hits the data cache.
+        /// Cost of freeze row 14: pfld that hits the data cache.
         pipelined_load_hit: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 15: store miss with three stores waiting, or with a write-back pending.
+        /// Cost of freeze row 15: store miss with three stores waiting, or with a write-back pending.
         store_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 16: bus request with three outstanding.
+        /// Cost of freeze row 16: bus request with three outstanding.
         address_pipe_full: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
-        /// Row 17: ld or fld right after a store that hit.
+        /// Cost of freeze row 17: ld or fld right after a store that hit.
         load_after_store_hit: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 18: bc.t, bnc.t or bla not taken.
+        /// Cost of freeze row 18: bc.t, bnc.t or bla not taken.
         delayed_branch_not_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected; a taken bnc.t costs no more than its slot in period code";
-        /// Row 19a: bc or bnc taken.
+        /// Cost of freeze row 19a: bc or bnc taken.
         branch_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 19b: bte or btne taken.
+        /// Cost of freeze row 19b: bte or btne taken.
         compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 20: bri, calli.
+        /// Cost of freeze row 20: bri, calli.
         indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 21: st.c to any control register.
+        /// Cost of freeze row 21: st.c to any control register.
         control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 22a: graphics result used by the next adder or multiplier operation.
+        /// Cost of freeze row 22a: graphics result used by the next adder or multiplier operation.
         graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 22b: graphics result used by the next graphics operation (not fmov.dd).
+        /// Cost of freeze row 22b: graphics result used by the next graphics operation (not fmov.dd).
         graphics_to_graphics: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 23: flush after flush.
+        /// Cost of freeze row 23: flush after flush.
         flush_after_flush: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 24: fst or pst, then a pipelined operation that overwrites the stored register.
+        /// Cost of freeze row 24: fst or pst, then a pipelined operation that overwrites the stored register.
         store_then_overwrite: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 25: result of frcp or frsqr used by the next instruction.
+        /// Cost of freeze row 25: result of frcp or frsqr used by the next instruction.
         seed_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list leaves the seeds out of row 10; a three-way root of 39 clocks allows 0 to 2";
     }
 }
@@ -105,7 +105,7 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Sizes of caches, TLB, bus and pipes on the chip. They cannot be set.
+    /// Sizes of caches, TLB, bus and pipes on the chip. These sizes cannot be set.
     pub struct ChipSizes {
         /// Size of the instruction cache.
         instruction_cache_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual";
@@ -154,7 +154,7 @@ pub struct Config {
     pub replacement_seed: u16,
     /// True if the clocks of repeated code that hits the caches are reused instead of counted again, as in FastSim
     /// (Schnarr and Larus, 1998).
-    /// This optimization changes only the host's time. It is on by default.
+    /// This optimization changes only the host's time and is on by default.
     pub memoise: bool,
 }
 
@@ -188,6 +188,7 @@ impl Config {
     /// Names of experiments include them. Memoization changes no result and is left out.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
+        // The pattern names every field, so that a new one cannot be forgotten.
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
         let usual = Config::cycle();
         let all = [

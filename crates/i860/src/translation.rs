@@ -51,6 +51,7 @@ impl Translation {
         let random = common.chance.next();
         self.tlb.fill(address, random);
         common.charge(Freeze::TlbMiss);
+        // The address of the page table is assumed; only its DRAM row matters for the time.
         let table = directory.wrapping_add((1 + (address >> 22)) * PAGE_BYTES);
         let first = common.bus.read(common.now, directory + (address >> 20 & 0xFFC), 1).first;
         let second = common.bus.read(first, table.wrapping_add(address >> 10 & 0xFFC), 1).first;

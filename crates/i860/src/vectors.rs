@@ -122,7 +122,7 @@ impl Bus for Sparse {
 pub struct Difference {
     /// `r5`, `f12`, or the address of a word.
     pub place: String,
-    /// Bit pattern of the vector.
+    /// Bit pattern that the vector expects.
     pub expected: u32,
     /// Bit pattern of this model.
     pub found: u32,
@@ -182,6 +182,7 @@ pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
 
 fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
     let vector: Vector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
+    // Instruction addresses must be aligned.
     let unaligned = [vector.load, vector.entry, vector.stop].iter().any(|address| address % 4 != 0);
     if unaligned {
         let reason = "load, entry and stop must be multiples of 4".to_owned();
@@ -217,6 +218,7 @@ impl Vector {
     /// The same as for [`Vector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
+        // Registers are zero after the reset; only the start address is set.
         cpu.state.pc = self.entry;
         let mut memory = self.memory();
         match cpu.run(&mut memory, Some(self.stop), BUDGET) {

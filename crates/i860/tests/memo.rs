@@ -3,7 +3,7 @@
 
 use i860::state::Mode;
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
-use i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, Shelf, assemble, decode};
+use i860::{AddressProfile, Config, Cpu, DecodedPrograms, Program, Ram, RunEnd, assemble, decode};
 use parameters::ParameterTable;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -267,7 +267,7 @@ proptest! {
         };
         let programs: Vec<Arc<Program>> = words.iter().map(program).collect();
         let mut twins: Vec<Twins> = registers.iter().map(|all| Twins::new(Config { freezes, ..Config::cycle() }, &[], all)).collect();
-        let mut shelf = Shelf::new();
+        let mut shelf = DecodedPrograms::new();
         for (which, number, instructions) in turns {
             let program = &programs[number];
             let [memoised, counted] = &mut twins[which].0;
@@ -303,7 +303,7 @@ fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
     let take_turns = |exchange: bool| {
         let mut ram = Ram::new(0, MEMORY);
         let mut cpu = Cpu::new(Config::cycle());
-        let mut shelf = Shelf::new();
+        let mut shelf = DecodedPrograms::new();
         for turn in 0..20 {
             let program = &programs[turn % 2];
             ram.load(CODE, &program.bytes).expect("fits");

@@ -1,7 +1,7 @@
 //! Configuration: the boards, and the variant of the pipeline.
 
 use crate::timing::JitpTiming;
-use pxpl5_display::{Aim, LightSpan};
+use pxpl5_display::{Aim, LightTimes};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
@@ -267,7 +267,7 @@ impl JitpConfig {
 
     /// Returns the instant for which some rows of a field are drawn.
     fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
-        let shown = LightSpan {
+        let shown = LightTimes {
             tick: self.beam.retrace(field),
             first: self.beam.at(field, first, 0),
             last: self.beam.at(field, last, self.grid().width - 1),

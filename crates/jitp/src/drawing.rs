@@ -3,10 +3,10 @@
 use crate::config::Interpolation;
 use glam::Mat4;
 use pphigs::{
-    DisplayList, EyeView, FrameView, Interpolating, MemoryPart, ModelEdit, Picture, PlacedStructure, PrimitiveCounts,
-    Share, gouraud_sphere, place_all,
+    DisplayList, EyeView, FrameView, MemoryPart, ModelEdit, Picture, PlacedStructure, PrimitiveCounts, Share,
+    StripInterpolation, gouraud_sphere, place_all,
 };
-use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
+use pxpl5_geometry::{Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, VertexColours, Viewport};
 use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -111,7 +111,7 @@ impl DrawnList {
 
     /// Returns the number of primitives that meet each window, and the number that meet any window.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
-        let mut tallies = Tallies::new(windows);
+        let mut tallies = WindowCounts::new(windows);
         if self.between.is_some() {
             self.each_outline(near(windows), |outline| tallies.add_outline(outline));
         } else {
@@ -135,7 +135,7 @@ impl DrawnList {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 match self.ends_of(i, k) {
-                    Some((ends, ..)) if is_apart(ends, near) => {}
+                    Some((ends, ..)) if is_outside_lines(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => transform.outline_between(ends, s, &mut stats, &mut sink),
                     _ => transform.outlines(&self.list.corners(number), &mut stats, &mut sink),
                 }
@@ -172,7 +172,7 @@ impl DrawnList {
                 // A triangle with positions in both views is interpolated on the screen; any other is drawn in the
                 // list's own view.
                 match self.ends_of(i, k) {
-                    Some((ends, ..)) if is_apart(ends, near) => {}
+                    Some((ends, ..)) if is_outside_lines(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => {
                         transform.gouraud_between(ends, s, &triangle, &place.light, &mut stats, |t| {
                             sink_if_met(t, window, &self.viewport, &mut sink);
@@ -204,15 +204,15 @@ impl DrawnList {
         windows: &[Window],
         picture: Picture,
         [ends, commands]: [MemoryPart; 2],
-    ) -> Option<Interpolating<'a>> {
+    ) -> Option<StripInterpolation<'a>> {
         let between = self.between.as_ref()?;
         let [from, to] = between.ends.views.as_ref() else { return None };
-        Some(Interpolating {
+        Some(StripInterpolation {
             share,
             views: [from, to],
             between: &between.view,
             part_of_way: between.part,
-            in_view: between.interpolation == Interpolation::View,
+            in_eye_space: between.interpolation == Interpolation::View,
             near: near(windows),
             picture,
             ends,
@@ -240,14 +240,14 @@ fn span(windows: &[Window]) -> [i32; 2] {
 }
 
 /// Returns true if a triangle is outside a range of distances from the frame's top at every moment.
-fn is_apart(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
+fn is_outside_lines(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top
 }
 
 /// Calls `sink` with the command of a triangle, if the triangle meets the window.
 fn sink_if_met(
-    triangle: ScreenTriangle<LitColours>,
+    triangle: ScreenTriangle<VertexColours>,
     window: &Window,
     viewport: &Viewport,
     sink: &mut impl FnMut(Command),
@@ -259,7 +259,7 @@ fn sink_if_met(
 }
 
 /// Counts the primitives that meet windows.
-struct Tallies<'a> {
+struct WindowCounts<'a> {
     windows: &'a [Window],
     /// Range from the top of the highest window to the bottom of the lowest one, in subpixels of the frame.
     span: [i32; 2],
@@ -267,7 +267,7 @@ struct Tallies<'a> {
     any: PrimitiveCounts,
 }
 
-impl<'a> Tallies<'a> {
+impl<'a> WindowCounts<'a> {
     fn new(windows: &'a [Window]) -> Self {
         Self {
             windows,

@@ -2,22 +2,22 @@
 //!
 //! The work interpolates the primitives, finds them in each region, and hands them over.
 
-use pphigs::{Interpolating, PrimitiveCounts, Searching};
+use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
 /// Work of interpolating the primitives near some regions and searching them.
-pub(crate) struct Finding<'a> {
-    pub(crate) searching: Searching<'a>,
+pub(crate) struct StripSearchWork<'a> {
+    pub(crate) searching: WindowSearchWork<'a>,
     /// Interpolation before the search; `None` if the display list was transformed for one view.
-    pub(crate) interpolating: Option<Interpolating<'a>>,
+    pub(crate) interpolating: Option<StripInterpolation<'a>>,
     /// Numbers of primitives that meet any of the regions.
     pub(crate) met: PrimitiveCounts,
     /// Time to interpolate one primitive by the timing table, in ns.
     pub(crate) interpolate_ns: u64,
 }
 
-impl Work for Finding<'_> {
+impl Work for StripSearchWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         let interpolated = if self.interpolating.is_some() { self.met.total() } else { 0 };
         self.searching.by_table(timing) + Span::from_ns(self.interpolate_ns * u64::from(interpolated))

@@ -1,10 +1,10 @@
 //! The master GP: it follows the beam, keeps the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
-use crate::ordering::Ordering;
+use crate::ordering::OrderAssemblyWork;
 use crate::protocol::DrawingOrder;
 use pphigs::{FrameView, PROGRAM_BYTES, TransformCost};
-use pxpl5_display::LightSpan;
+use pxpl5_display::LightTimes;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, ViewNumber};
@@ -122,7 +122,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
         };
         let order = DrawingOrder::Field { field, views };
-        self.gp.work(&Ordering(&order)).await?;
+        self.gp.work(&OrderAssemblyWork(&order)).await?;
         let (words, body) = order.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
         Ok(())
@@ -144,7 +144,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
 
     /// Assembles an order and sends it.
     async fn order(&self, slave: NodeId, order: &DrawingOrder) -> Result<(), Fault> {
-        self.gp.work(&Ordering(order)).await?;
+        self.gp.work(&OrderAssemblyWork(order)).await?;
         let (words, body) = order.message();
         self.gp.send(slave, words, body).await;
         Ok(())
@@ -154,7 +154,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
-        let mut flight = Flight::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
+        let mut flight = OrderTimes::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
         for update in PictureNumber::FIRST.onwards() {
             let slave = self.gp.until("a slave", || self.state.done.borrow_mut().pop_front()).await;
             let number = ViewNumber::taken_for(update);
@@ -176,7 +176,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         // Find the first retrace after the blocks have been drawn.
         let tick =
             self.gp.field().onwards().map(|field| beam.retrace(field)).find(|tick| *tick >= first).unwrap_or(first);
-        self.config.aim.instant(&LightSpan { tick, first, last: first + expected.standing })
+        self.config.aim.instant(&LightTimes { tick, first, last: first + expected.standing })
     }
 }
 
@@ -187,14 +187,14 @@ struct Expected {
 }
 
 /// Recent times from order to order, which predict the time of the next order.
-struct Flight {
+struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
     /// Times of the orders of the last pass over all blocks, oldest first.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }
 
-impl Flight {
+impl OrderTimes {
     fn new(slaves: usize, orders_of_pass: u64) -> Self {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }

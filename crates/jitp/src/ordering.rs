@@ -1,7 +1,7 @@
 //! Assembly of the master's orders, as work of its board.
 
 use crate::protocol::DrawingOrder;
-use pphigs::{TransformCost, put_together};
+use pphigs::{TransformCost, assemble_order};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
@@ -9,9 +9,9 @@ use pxpl5_sim::Span;
 ///
 /// By the timing table the order of a field takes the time of an empty pass. Other orders take no time besides their
 /// message.
-pub(crate) struct Ordering<'a>(pub(crate) &'a DrawingOrder);
+pub(crate) struct OrderAssemblyWork<'a>(pub(crate) &'a DrawingOrder);
 
-impl Work for Ordering<'_> {
+impl Work for OrderAssemblyWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         match self.0 {
             DrawingOrder::Field { .. } => TransformCost::PASS.span(timing),
@@ -20,7 +20,7 @@ impl Work for Ordering<'_> {
     }
 
     fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        put_together(processor, &self.0.words(), self.0.head_words())
+        assemble_order(processor, &self.0.words(), self.0.head_words())
     }
 }
 
@@ -43,7 +43,7 @@ mod tests {
             DrawingOrder::Strip { field: PeriodNumber(3), strip: 7, deadline: Time(9), view: None },
         ] {
             let mut processor = Processor::new(MASTER, 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
-            let span = Ordering(&order).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+            let span = OrderAssemblyWork(&order).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
             let least = Span::from_ns(25 * 6 * order.words().len() as u64);
             assert!(span > least && span < least * 4, "{span} for {least}: {order:?}");
         }

@@ -6,7 +6,7 @@ use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
-    CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay,
+    CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyPath, CopyTarget,
     MAX_MESSAGE_WORDS, RegionId, Word,
 };
 use std::ops::Range;
@@ -111,7 +111,7 @@ pub(crate) fn messages(
             vec![CopyOrder {
                 target,
                 context: 0,
-                way: CopyWay::FromPixelMemory,
+                way: CopyPath::FromPixelMemory,
                 acknowledge: None,
                 content: CopyContent::Colour,
             }]
@@ -173,7 +173,7 @@ impl CommandWords for RegionWords {
         }
     }
 
-    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+    fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         self.parts.get(part as usize).is_some_and(Part::draws)
     }

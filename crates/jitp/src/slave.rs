@@ -2,11 +2,11 @@
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
-use crate::finding::Finding;
+use crate::finding::StripSearchWork;
 use crate::pieces::{messages, window};
 use crate::protocol::DrawingOrder;
 use crate::whole::{self, WholeList};
-use pphigs::{DisplayList, FrameView, MemoryPart, PROGRAM_BYTES, Searching, Share, TransformCost};
+use pphigs::{DisplayList, FrameView, MemoryPart, PROGRAM_BYTES, Share, TransformCost, WindowSearchWork};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::Time;
@@ -58,7 +58,7 @@ impl std::fmt::Debug for Transforms {
 
 impl Transforms {
     /// Returns the field from the cache, or makes it by `make`.
-    fn known_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
+    fn cached_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
             return ready.clone();
@@ -135,7 +135,7 @@ impl Slave {
             let part = self.next_part();
             self.transform_all(&views, PictureNumber::drawn_for(field), part).await?;
             self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
-            let ready = self.transforms.known_or_made(field, || self.transform(field, views));
+            let ready = self.transforms.cached_or_made(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
             state.transformed.push_back((field, ready, part));
             state.n_transformed += 1;
@@ -274,7 +274,7 @@ impl Slave {
         let of_kernels = whole::picture(*viewport, self.config.layout);
         // Interpolated commands go to their own part of memory, which is searched instead of the field's part.
         let interpolating = drawing.interpolating(&self.share, &windows, of_kernels, [part, OF_STRIP]);
-        let searching = Searching {
+        let searching = WindowSearchWork {
             part: if interpolating.is_some() { OF_STRIP } else { part },
             viewport: *viewport,
             grid: self.config.grid(),
@@ -282,7 +282,7 @@ impl Slave {
             counts: &counts,
         };
         let interpolate_ns = self.config.timing.interpolate_ns;
-        let finding = Finding { searching, interpolating, met: any, interpolate_ns };
+        let finding = StripSearchWork { searching, interpolating, met: any, interpolate_ns };
         self.gp.work(&finding).await?;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);

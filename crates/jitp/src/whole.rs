@@ -1,6 +1,6 @@
 //! TRANSFORM of the whole display list as work of a board.
 
-use pphigs::{FrameView, KeepingEnds, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost};
+use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, TriangleEndsRecorder};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
@@ -35,7 +35,9 @@ impl Work for WholeList<'_> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);
         let kept = match self.views {
-            [from, to] => KeepingEnds { share, views: [from, to], picture, part }.run_code(timing, processor)?,
+            [from, to] => {
+                TriangleEndsRecorder { share, views: [from, to], picture, part }.run_code(timing, processor)?
+            }
             views => views
                 .iter()
                 .try_fold(None, |_, view| self.share.transform(view, 0, picture).keep(timing, processor, part))?,

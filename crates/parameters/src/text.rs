@@ -7,6 +7,7 @@
 /// The line and the byte within it, both from 1, of the first byte that is not UTF-8.
 pub fn text_of(bytes: &[u8]) -> Result<&str, String> {
     std::str::from_utf8(bytes).map_err(|error| {
+        // Only the valid text before the error gives its line and place.
         let before = &bytes[..error.valid_up_to()];
         let lines = before.iter().filter(|byte| **byte == b'\n').count();
         let begin = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);

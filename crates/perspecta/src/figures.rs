@@ -195,6 +195,7 @@ pub fn packing() -> Vec<Figure> {
 fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     let exact = config.swept(SliceClip::ShaderPlanes, spatialgl::Projection::Orthographic).ok();
     let served = |display: SweptDisplay| {
+        // The second half turn has the same planes.
         let distinct = &display.views()[..config.slices as usize / 2];
         distinct.iter().filter(|view| view.bins & 1 == 1).count()
     };
@@ -224,6 +225,7 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let step = radius / f64::from(steps);
     let area: f64 = (0..steps)
         .map(|i| {
+            // Integrate the thickness over u, limited to the disc.
             let u = (f64::from(i) + 0.5) * step;
             let chord = (radius * radius - u * u).sqrt();
             4.0 * step * clip.half_thickness(wedge, u).min(chord)

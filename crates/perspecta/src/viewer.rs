@@ -47,6 +47,7 @@ impl Camera {
         };
         rule(self.azimuth_deg.is_finite(), "azimuth", "a finite angle", self.azimuth_deg)?;
         rule(self.elevation_deg.is_finite(), "elevation", "a finite angle", self.elevation_deg)?;
+        // The eye must be outside of the sphere that contains all voxels.
         let is_outside = self.distance.is_finite() && self.distance > reach;
         rule(is_outside, "distance", "an eye outside of the display", self.distance)?;
         rule(self.focal.is_finite() && self.focal > 0.0, "focal", "a length above 0 px", self.focal)?;
@@ -288,6 +289,7 @@ impl Strobe {
             focal: camera.focal,
             centre: camera.size.map(|side| f64::from(side) / 2.0),
             lambert: options.lambert,
+            // The half with u < 0 points in the opposite direction.
             cut: [is_cut(options.cut_deg, angle + 180.0), is_cut(options.cut_deg, angle)],
         }
     }
@@ -336,6 +338,7 @@ pub fn film(
     (0..frames).map(move |i| {
         let azimuth_deg = camera.azimuth_deg + 360.0 * f64::from(i) / f64::from(frames);
         let light = view_planes(planes, &Camera { azimuth_deg, ..camera }, options, workers)?;
+        // The first picture determines the exposure of the film.
         let exposure = *exposure.get_or_insert_with(|| light.exposure(0.98));
         Ok(light.picture(exposure))
     })

@@ -9,7 +9,7 @@ use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETE
 use crate::list::{DisplayList, Share};
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
-use crate::placing::place_once;
+use crate::placing::place_cached;
 use crate::view::{FrameView, MAX_EDITS};
 use glam::Mat4;
 use i860::Program;
@@ -35,9 +35,9 @@ const BUDGET: u64 = 20_000;
 
 /// Work of EDIT: stores the edited matrices of a view.
 #[derive(Clone, Copy, Debug)]
-pub struct Editing<'a>(pub &'a FrameView);
+pub struct EditWork<'a>(pub &'a FrameView);
 
-impl Work for Editing<'_> {
+impl Work for EditWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         Span::from_ns(timing.edit_ns) * self.0.edits.len() as u64
     }
@@ -63,7 +63,7 @@ impl Work for Editing<'_> {
 
 /// Work at the beginning of a pass over the display list, for one eye or both.
 #[derive(Clone, Debug)]
-pub struct Beginning {
+pub struct PassStartWork {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
     /// Number of bins to reset for each eye; 0 if there are no bins.
@@ -75,13 +75,13 @@ pub struct Beginning {
 impl Share {
     /// Returns the work at the beginning of a pass for some eyes of a view.
     #[must_use]
-    pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> Beginning {
-        let eyes = eyes.iter().map(|eye| place_once(&self.list, view, *eye, picture.viewport)).collect();
-        Beginning::new(&self.list, eyes, picture)
+    pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> PassStartWork {
+        let eyes = eyes.iter().map(|eye| place_cached(&self.list, view, *eye, picture.viewport)).collect();
+        PassStartWork::new(&self.list, eyes, picture)
     }
 }
 
-impl Beginning {
+impl PassStartWork {
     pub(crate) fn new(list: &Arc<DisplayList>, eyes: Vec<Arc<[PlacedStructure]>>, picture: Picture) -> Self {
         let bins = match picture.binning {
             // Spheres always have bins.
@@ -97,7 +97,7 @@ impl Beginning {
     }
 
     /// Returns the same work for the chosen structures only.
-    pub(crate) fn of_chosen(self, chosen: Option<&[bool]>) -> Self {
+    pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
@@ -109,7 +109,7 @@ impl Beginning {
     }
 }
 
-impl Work for Beginning {
+impl Work for PassStartWork {
     fn by_table(&self, timing: &GpTiming) -> Span {
         let begun = self.eyes.iter().flat_map(|placed| self.begun(placed));
         TransformCost::beginning(begun.map(|place| &place.structure)).span(timing)

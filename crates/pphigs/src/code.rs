@@ -4,7 +4,7 @@
 //! Each structure of the display list is one call of either kernel. All triangles come before the spheres, so that bins
 //! hold commands in the order in which they are sent.
 
-use crate::begin::{Beginning, beginning};
+use crate::begin::{PassStartWork, beginning};
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
 use crate::layout::{
@@ -51,7 +51,7 @@ pub(crate) const fn budget(primitives: u32) -> u64 {
 ///
 /// Both eyes take one pass if a kernel supports that ([`Kernel::can_serve_both_eyes`]), otherwise one pass each.
 #[derive(Clone, Copy, Debug)]
-pub struct Transforming<'a> {
+pub struct TransformWork<'a> {
     /// The TRANSFORM results of each eye.
     pub passes: &'a [Arc<Pass>],
     /// Bin context of the first eye, 0 or 1. The second eye uses the other context.
@@ -84,7 +84,7 @@ impl KernelOutput {
     }
 }
 
-impl Work for Transforming<'_> {
+impl Work for TransformWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         let of_passes = self.passes.iter().map(|pass| pass.cost().span(timing));
         of_passes.fold(self.begin(timing), |all, span| all + span)
@@ -94,7 +94,7 @@ impl Work for Transforming<'_> {
         let mut span = match self.passes.first() {
             Some(pass) if self.begins => {
                 let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
-                Beginning::new(pass.share().list(), eyes, *pass.picture()).by_code(timing, processor)?
+                PassStartWork::new(pass.share().list(), eyes, *pass.picture()).by_code(timing, processor)?
             }
             _ => Span::ZERO,
         };
@@ -119,7 +119,7 @@ impl Work for Transforming<'_> {
     }
 }
 
-impl Transforming<'_> {
+impl TransformWork<'_> {
     fn begin(&self, timing: &GpTiming) -> Span {
         if !self.begins {
             return Span::ZERO;
@@ -159,12 +159,12 @@ impl Share {
 }
 
 /// Number of bytes that a view's output needs: commands, and entries of each bin.
-pub(crate) struct Needs {
+pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
 }
 
-impl Needs {
+impl OutputSize {
     pub(crate) fn bytes(&self) -> u32 {
         self.commands + 4 * self.entries.iter().sum::<u32>()
     }
@@ -332,7 +332,7 @@ impl Pass {
         &self,
         processor: &mut Processor,
         kernel: Kernel,
-        needs: &Needs,
+        needs: &OutputSize,
         to: Destination,
         marks: Option<Marks>,
     ) -> Result<KernelOutput, ProcessorFault> {
@@ -485,7 +485,7 @@ impl Pass {
     /// The kernel needs room for a command of every given primitive, visible or not, for the pieces of clipped
     /// triangles, and for a command that may be dropped. The accounts of [`pxpl5_gp::Memory`] are smaller, since they
     /// count only visible primitives.
-    pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> Needs {
+    pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
             let counts = self.counts(RegionId(region));
@@ -494,7 +494,7 @@ impl Pass {
         let entries = entries.collect();
         let sphere_bytes = 4 * sphere_kernel(kernel).command_words() as u32;
         let commands = kernel.command_bytes() * self.most_commands(given) + sphere_bytes * given.spheres;
-        Needs { commands, entries }
+        OutputSize { commands, entries }
     }
 
     /// Returns the number of triangle commands that need room, as defined by [`Pass::needs`].

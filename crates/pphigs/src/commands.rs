@@ -231,7 +231,7 @@ impl CommandWords for RegionWords {
         self.append_with(&part, self.pass.triangles_in(self.region, &part.triangles), out);
     }
 
-    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+    fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         let part = self.part(part);
         let triangles = self.pass.triangles_touching(self.region, &part.triangles);
         let draws = !triangles.is_empty() || !part.spheres.is_empty();

@@ -16,7 +16,7 @@ use std::sync::{Arc, LazyLock};
 
 /// Work of handing over the bin of a region in its envelope.
 #[derive(Clone, Copy, Debug)]
-pub struct Handing<'a> {
+pub struct BinHandoffWork<'a> {
     /// The TRANSFORM that filled the bin.
     pub pass: &'a Pass,
     /// Bin context, 0 or 1.
@@ -44,7 +44,7 @@ const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS,
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
-impl Work for Handing<'_> {
+impl Work for BinHandoffWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         Span::from_ns(timing.token_entry_ns) * u64::from(self.pass.counts(self.region).total())
     }
@@ -72,7 +72,7 @@ impl Work for Handing<'_> {
     }
 }
 
-impl Handing<'_> {
+impl BinHandoffWork<'_> {
     /// Returns the parameters of the envelope.
     ///
     /// They are: address and words of the region's start, of every other message's start, and of the region's end; and

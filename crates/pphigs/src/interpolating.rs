@@ -26,7 +26,7 @@ const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 
 /// Work of recording the positions of all triangles in two views, in a part of memory.
 #[derive(Clone, Copy, Debug)]
-pub struct KeepingEnds<'a> {
+pub struct TriangleEndsRecorder<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// The first and the second view.
@@ -37,7 +37,7 @@ pub struct KeepingEnds<'a> {
     pub part: MemoryPart,
 }
 
-impl KeepingEnds<'_> {
+impl TriangleEndsRecorder<'_> {
     /// Runs the code on a board that holds the display list, including the beginning of both passes.
     ///
     /// Returns `None` for a picture that has no kernel.
@@ -77,7 +77,7 @@ const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
 /// Work of making the commands of a strip for a view between two views: its triangles, and all spheres, with their
 /// boxes.
 #[derive(Clone, Copy, Debug)]
-pub struct Interpolating<'a> {
+pub struct StripInterpolation<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// The first and the second view, whose triangles have been recorded.
@@ -87,7 +87,7 @@ pub struct Interpolating<'a> {
     /// Position between the first view (0) and the second view (1).
     pub part_of_way: f64,
     /// True if triangles are interpolated in eye space before the divide, false if on the screen.
-    pub in_view: bool,
+    pub in_eye_space: bool,
     /// Least and greatest distance from the frame's top, in 1/16 px, of triangles that may be on the strip at any
     /// position.
     pub near: [i32; 2],
@@ -99,7 +99,7 @@ pub struct Interpolating<'a> {
     pub commands: MemoryPart,
 }
 
-impl Interpolating<'_> {
+impl StripInterpolation<'_> {
     /// Runs the code on a board that holds the recorded positions. Returns `None` for a picture that has no kernel.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl Interpolating<'_> {
         let blended = self.blend(processor, kernel)?;
         let beginning = pass.beginning_without_bins().by_code(timing, processor)?;
         let triangles = |processor: &mut Processor, first| self.run_triangles(processor, kernel, &pass, first);
-        let of_kernels = pass.keep_what(processor, kernel, self.commands, triangles)?;
+        let of_kernels = pass.keep_commands(processor, kernel, self.commands, triangles)?;
         Ok(Some(blended + beginning + of_kernels))
     }
 
@@ -153,7 +153,7 @@ impl Interpolating<'_> {
             let [first, count, record] = addresses(&held, records);
             let data = [(2, STACK), (16, first), (17, count), (20, PARAMETERS), (21, record)];
             let to = [(18, next.command), (19, next.table)];
-            let strip = [(22, top), (23, bottom), (24, Word::from(self.in_view)), (25, low), (26, high)];
+            let strip = [(22, top), (23, bottom), (24, Word::from(self.in_eye_space)), (25, low), (26, high)];
             span += processor.call(&program, "start", &[data.as_slice(), &to, &strip].concat(), budget(count))?;
             next = next.left(processor, true);
         }
@@ -212,12 +212,12 @@ mod tests {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
         for (edits, s) in [(0, 0.25), (1, -0.06), (62, 1.0), (70, 1.0 / 3.0)] {
             let [from, to] = [view(0.4, edits), view(1.1, edits)];
-            let interpolating = Interpolating {
+            let interpolating = StripInterpolation {
                 share: &share,
                 views: [&from, &to],
                 between: &from,
                 part_of_way: s,
-                in_view: true,
+                in_eye_space: true,
                 near: [0, 0],
                 picture,
                 ends: MemoryPart::WHOLE,

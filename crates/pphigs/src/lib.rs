@@ -15,13 +15,13 @@
 //! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. It computes command
 //!   words on demand, from the same transformed vertices.
 //! - [`TransformCost`]: counts of the work of a TRANSFORM, and its time by the timing table.
-//! - [`Transforming`]: TRANSFORM as work of a board, timed by the table or run as i860 code that makes the same words.
-//! - [`Surrounding`]: TRANSFORM of six views around an eye, as i860 code.
-//! - [`Handing`]: handover of a region's bin to the ring, as work of a board.
-//! - [`Searching`]: search and handover of the primitives in rectangles of the screen without bins, as work of a board.
-//! - [`KeepingEnds`] and [`Interpolating`]: positions of triangles in two views, and commands for a strip of a view in
+//! - [`TransformWork`]: TRANSFORM as work of a board, timed by the table or run as i860 code that makes the same words.
+//! - [`CubeTransform`]: TRANSFORM of six views around an eye, as i860 code.
+//! - [`BinHandoffWork`]: handover of a region's bin to the ring, as work of a board.
+//! - [`WindowSearchWork`]: search and handover of the primitives in rectangles of the screen without bins, as work of a board.
+//! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands for a strip of a view in
 //!   between, as i860 code.
-//! - [`put_together`]: assembly of a master's order, as i860 code.
+//! - [`assemble_order`]: assembly of a master's order, as i860 code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!
@@ -48,23 +48,23 @@ mod surrounding;
 mod view;
 mod windows;
 
-pub use begin::{Beginning, Editing};
-pub use code::{KernelOutput, Transforming};
+pub use begin::{EditWork, PassStartWork};
+pub use code::{KernelOutput, TransformWork};
 pub use commands::{
     BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,
 };
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
-pub use handing::{Handing, MessagePieces};
-pub use interpolating::{Interpolating, KeepingEnds};
+pub use handing::{BinHandoffWork, MessagePieces};
+pub use interpolating::{StripInterpolation, TriangleEndsRecorder};
 pub use list::{DisplayList, Share};
-pub use ordering::put_together;
+pub use ordering::assemble_order;
 pub use pass::Pass;
 pub use picture::{Picture, RegionBinning, Shading};
 pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
 pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
-pub use surrounding::{Surrounding, SurroundingOutput};
+pub use surrounding::{CubeTransform, CubeTransformOutput};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};
-pub use windows::{MemoryPart, SearchOutput, Searching};
+pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};

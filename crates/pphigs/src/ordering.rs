@@ -20,7 +20,7 @@ const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 /// # Errors
 ///
 /// [`ProcessorFault`] if the code does not end, or the order is longer than a message.
-pub fn put_together(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
+pub fn assemble_order(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
     let (head, views) = order.split_at(head.min(order.len()));
     if order.len() > MAX_MESSAGE_WORDS as usize || head.len() > HEAD_WORDS {
         return Err(ProcessorFault::Unmapped { gp: processor.node(), address: MESSAGE, words: order.len() });
@@ -59,12 +59,12 @@ mod tests {
         for (words, head) in [(1, 1), (6, 6), (110, 4), (MAX_MESSAGE_WORDS, 6)] {
             let order: Vec<Word> = (0..words).map(|word| 0x1000_0000 + 7 * word).collect();
             processor.write(MESSAGE, &vec![0; order.len() + 1]).expect("in memory");
-            let span = put_together(&mut processor, &order, head).expect("it returns");
+            let span = assemble_order(&mut processor, &order, head).expect("it returns");
             // Each word takes six instructions. The last one is a branch, which takes two more clocks when taken.
             assert!(span >= Processor::CLOCK * (6 * u64::from(words)), "{span:?} for {words} words");
             assert_eq!(processor.read(MESSAGE, order.len()).expect("in memory"), order);
             assert_eq!(processor.read(MESSAGE + 4 * words, 1).expect("in memory"), [0], "{words} words and no more");
         }
-        assert!(put_together(&mut processor, &[0; MAX_MESSAGE_WORDS as usize + 1], 4).is_err());
+        assert!(assemble_order(&mut processor, &[0; MAX_MESSAGE_WORDS as usize + 1], 4).is_err());
     }
 }

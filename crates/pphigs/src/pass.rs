@@ -5,7 +5,7 @@ use crate::encoder::Encoder;
 use crate::list::Share;
 use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
-use crate::placing::place_once;
+use crate::placing::place_cached;
 use crate::view::FrameView;
 use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
@@ -41,7 +41,7 @@ pub struct Pass {
     /// Bins by region, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
     /// Triangles that touch each region, computed at the first use if every region gets all triangles.
-    touching: OnceLock<Touching>,
+    touching: OnceLock<RegionTriangles>,
     /// Encoder of triangle commands, created at the first use.
     encoder: OnceLock<Option<Encoder>>,
 }
@@ -57,7 +57,7 @@ struct Walk {
 }
 
 /// A consumer of the binning results, which arrive structure by structure in the order of the display list.
-trait Take {
+trait BinningSink {
     /// Takes a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
@@ -81,7 +81,7 @@ struct Found {
 }
 
 /// A consumer that counts primitives.
-struct Counting {
+struct PrimitiveCounter {
     /// For each region, the triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
     /// For each region, all other primitives.
@@ -90,7 +90,7 @@ struct Counting {
     binning: RegionBinning,
 }
 
-impl Counting {
+impl PrimitiveCounter {
     fn of(picture: &Picture) -> Self {
         let counts = vec![PrimitiveCounts::default(); picture.viewport.grid().regions() as usize];
         let alone = [0; RegionMask::CAPACITY as usize];
@@ -113,7 +113,7 @@ impl Counting {
     }
 }
 
-impl Take for Counting {
+impl BinningSink for PrimitiveCounter {
     #[inline(always)]
     fn triangle_in(&mut self, region: RegionId, _: u32) {
         self.alone[usize::from(region.0)] += 1;
@@ -133,12 +133,12 @@ impl Take for Counting {
 }
 
 /// A consumer that counts primitives and also records the numbers of those in any bin.
-struct Noting {
-    counting: Counting,
+struct PrimitiveRecorder {
+    counting: PrimitiveCounter,
     touching: [Vec<u32>; 2],
 }
 
-impl Take for Noting {
+impl BinningSink for PrimitiveRecorder {
     fn triangle_in(&mut self, region: RegionId, triangle: u32) {
         self.counting.triangle_in(region, triangle);
         self.touching[0].push(triangle);
@@ -158,12 +158,12 @@ impl Take for Noting {
 }
 
 /// A consumer that fills bins.
-struct Filling {
+struct BinFiller {
     bins: Vec<Bin>,
     binning: RegionBinning,
 }
 
-impl Take for Filling {
+impl BinningSink for BinFiller {
     #[inline(always)]
     fn triangle_in(&mut self, region: RegionId, triangle: u32) {
         self.bins[usize::from(region.0)].triangles.push(BinEntry { triangle, piece: Some(0) });
@@ -185,13 +185,13 @@ impl Take for Filling {
 
 /// A consumer that collects the triangles that touch each region, while every region's bin gets all triangles.
 #[derive(Debug)]
-struct Touching {
+struct RegionTriangles {
     /// Entries by region, each with its place in the bin.
     entries: Vec<Vec<(u32, BinEntry)>>,
     n_triangles: u32,
 }
 
-impl Take for Touching {
+impl BinningSink for RegionTriangles {
     fn triangle_in(&mut self, region: RegionId, triangle: u32) {
         self.piece(RegionMask::only(region), BinEntry { triangle, piece: Some(0) });
     }
@@ -212,7 +212,7 @@ impl Walk {
         self.placed.iter().enumerate().filter(move |(structure, _)| is_chosen(*structure)).map(|(_, place)| place)
     }
 
-    fn go(&self, take: &mut impl Take) -> SetupStats {
+    fn go(&self, take: &mut impl BinningSink) -> SetupStats {
         let mut stats = SetupStats::default();
         for place in self.taken() {
             let Some(transform) = &place.transform else { continue };
@@ -226,7 +226,13 @@ impl Walk {
         stats
     }
 
-    fn triangles(&self, place: &PlacedStructure, transform: &Transform, take: &mut impl Take, stats: &mut SetupStats) {
+    fn triangles(
+        &self,
+        place: &PlacedStructure,
+        transform: &Transform,
+        take: &mut impl BinningSink,
+        stats: &mut SetupStats,
+    ) {
         let list = &self.share.list;
         let first = place.structure.triangles.start;
         let touched = place.touched(list, transform);
@@ -279,13 +285,13 @@ impl Share {
 
 impl Pass {
     fn new(share: Share, view: &FrameView, eye: usize, picture: Picture, chosen: Option<&[bool]>) -> Self {
-        let placed = place_once(&share.list, view, eye, picture.viewport);
+        let placed = place_cached(&share.list, view, eye, picture.viewport);
         let walk = Walk { share, placed, picture, chosen: chosen.map(Box::from) };
-        let mut counting = Counting::of(&picture);
+        let mut counting = PrimitiveCounter::of(&picture);
         let (stats, found) = if walk.chosen.is_none() {
             (walk.go(&mut counting), counting.found(None))
         } else {
-            let mut noting = Noting { counting, touching: Default::default() };
+            let mut noting = PrimitiveRecorder { counting, touching: Default::default() };
             (walk.go(&mut noting), noting.counting.found(Some(noting.touching)))
         };
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
@@ -298,13 +304,13 @@ impl Pass {
             spheres: Vec::with_capacity(counts.spheres as usize),
         };
         let bins = self.found.counts.iter().map(room).collect();
-        let mut filling = Filling { bins, binning: self.walk.picture.binning };
+        let mut filling = BinFiller { bins, binning: self.walk.picture.binning };
         self.walk.go(&mut filling);
         filling.bins
     }
 
-    fn found_touching(&self) -> Touching {
-        let mut touching = Touching { entries: vec![Vec::new(); self.found.counts.len()], n_triangles: 0 };
+    fn found_touching(&self) -> RegionTriangles {
+        let mut touching = RegionTriangles { entries: vec![Vec::new(); self.found.counts.len()], n_triangles: 0 };
         self.walk.go(&mut touching);
         touching
     }

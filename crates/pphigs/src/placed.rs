@@ -87,7 +87,7 @@ impl RecentViews {
     }
 
     /// Returns the structures of a view from the cache, or places them by `place`.
-    pub(crate) fn find_or_place(
+    pub(crate) fn cached_or_placed(
         &self,
         key: ViewKey,
         place: impl FnOnce() -> Vec<PlacedStructure>,

@@ -40,14 +40,14 @@ fn named(list: &DisplayList) -> Vec<Range<usize>> {
 }
 
 /// Places all structures like [`place_all`], with a cache for all callers.
-pub(crate) fn place_once(
+pub(crate) fn place_cached(
     list: &DisplayList,
     view: &FrameView,
     eye: usize,
     viewport: Viewport,
 ) -> Arc<[PlacedStructure]> {
     let key = ViewKey { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
-    list.recent.find_or_place(key, || place_all(list, view, eye, viewport))
+    list.recent.cached_or_placed(key, || place_all(list, view, eye, viewport))
 }
 
 fn eye_of(view: &FrameView, eye: usize) -> &EyeView {

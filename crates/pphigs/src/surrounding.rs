@@ -3,8 +3,8 @@
 //! Each primitive is transformed only for the views that it may touch. kernels/sort.s finds these views, and
 //! kernels/runs.s passes the primitives to the kernels. The rules are the project's own (kernels/sort_rules.md).
 
-use crate::begin::Beginning;
-use crate::code::{Destination, KernelOutput, Marks, Needs, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
+use crate::begin::PassStartWork;
+use crate::code::{Destination, KernelOutput, Marks, OutputSize, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
 use crate::counts::PrimitiveCounts;
 use crate::layout::{DISPLAY_LIST, MOST_VIEWS, PARAMETERS, SORT_CODE, SPHERE_PARAMETERS};
 use crate::pass::Pass;
@@ -22,7 +22,7 @@ const MARGIN: f32 = 1.0 / 32.0;
 
 /// Work of the TRANSFORM of a share for six views of one place.
 #[derive(Clone, Copy, Debug)]
-pub struct Surrounding<'a> {
+pub struct CubeTransform<'a> {
     /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z, in the axes of the last view's eye. All have the
     /// same projection.
     pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
@@ -32,20 +32,20 @@ pub struct Surrounding<'a> {
 
 /// Result of the six views in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SurroundingOutput {
+pub struct CubeTransformOutput {
     /// Simulated time of all steps.
     pub span: Span,
     /// Simulated time of the beginning of the pass, which is included in `span`.
-    pub of_beginning: Span,
+    pub start_span: Span,
     /// Simulated time to find the views of each primitive, which is included in `span`.
-    pub of_sorting: Span,
+    pub sort_span: Span,
     /// Numbers of primitives transformed for each view, visible or not.
     pub given: Vec<PrimitiveCounts>,
     /// Results of each view's kernels.
     pub views: Vec<KernelOutput>,
 }
 
-impl Surrounding<'_> {
+impl CubeTransform<'_> {
     /// Runs the code on a board that holds the display list. Returns `None` for pictures that have no kernel.
     ///
     /// # Errors
@@ -55,14 +55,14 @@ impl Surrounding<'_> {
         &self,
         timing: &GpTiming,
         processor: &mut Processor,
-    ) -> Result<Option<SurroundingOutput>, ProcessorFault> {
+    ) -> Result<Option<CubeTransformOutput>, ProcessorFault> {
         let [.., ahead] = self.passes;
         let Some(kernel) = ahead.kernel(processor.version()) else { return Ok(None) };
         let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
         // The pass begins once for all six views, with the picture and structures of the last one.
-        let beginning = Beginning::new(ahead.share().list(), eyes, *ahead.picture()).of_chosen(ahead.chosen());
-        let of_beginning = beginning.by_code(timing, processor)?;
-        let (of_sorting, given) = self.sort(processor, kernel)?;
+        let beginning = PassStartWork::new(ahead.share().list(), eyes, *ahead.picture()).for_structures(ahead.chosen());
+        let start_span = beginning.by_code(timing, processor)?;
+        let (sort_span, given) = self.sort(processor, kernel)?;
         // Each view needs room only for the primitives that were sorted into it.
         let needs = || self.passes.iter().zip(&given).map(|(pass, given)| pass.needs(kernel, *given));
         let bytes = needs().map(|needs| needs.bytes()).sum();
@@ -75,8 +75,8 @@ impl Surrounding<'_> {
             begin += needs.bytes();
         }
         let of_kernels = views.iter().fold(Span::ZERO, |all, view| all + view.span);
-        let span = of_beginning + of_sorting + of_kernels;
-        Ok(Some(SurroundingOutput { span, of_beginning, of_sorting, given, views }))
+        let span = start_span + sort_span + of_kernels;
+        Ok(Some(CubeTransformOutput { span, start_span, sort_span, given, views }))
     }
 
     fn run_view(
@@ -84,7 +84,7 @@ impl Surrounding<'_> {
         processor: &mut Processor,
         kernel: Kernel,
         (view, pass): (u8, &Arc<Pass>),
-        needs: &Needs,
+        needs: &OutputSize,
         begin: u32,
     ) -> Result<KernelOutput, ProcessorFault> {
         let [triangles, spheres, _] = marks(pass);
@@ -104,7 +104,7 @@ impl Surrounding<'_> {
         // Triangles first, then spheres, as in the display list.
         for (place, transform, held) in ahead.calls_of_triangles() {
             processor.write(PARAMETERS, &kernel.parameters(transform, &place.light, &heads, 0))?;
-            let sorted = Sorted { held, first: DISPLAY_LIST, bytes: TRIANGLE_BYTES, marks: triangles };
+            let sorted = ViewSort { held, first: DISPLAY_LIST, bytes: TRIANGLE_BYTES, marks: triangles };
             span += sorted.run(processor, "triangles", place)?;
             given.iter_mut().zip(sorted.counts(processor)?).for_each(|(given, more)| given.triangles += more);
         }
@@ -114,7 +114,7 @@ impl Surrounding<'_> {
             processor.write(PARAMETERS, &kernel.parameters(transform, &place.light, &heads, 0))?;
             processor.write(SPHERE_PARAMETERS, &parameters)?;
             let first = ahead.share().place_of_spheres();
-            let sorted = Sorted { held, first, bytes: SPHERE_BYTES, marks: spheres };
+            let sorted = ViewSort { held, first, bytes: SPHERE_BYTES, marks: spheres };
             span += sorted.run(processor, "spheres", place)?;
             given.iter_mut().zip(sorted.counts(processor)?).for_each(|(given, more)| given.spheres += more);
         }
@@ -134,14 +134,14 @@ fn marks(pass: &Pass) -> [u32; 3] {
 ///
 /// `held` are their indices among those that the GP holds. `first` is the address of the GP's first primitive, `bytes`
 /// the size of one, and `marks` the address of the first mark word.
-struct Sorted {
+struct ViewSort {
     held: Range<usize>,
     first: u32,
     bytes: u32,
     marks: u32,
 }
 
-impl Sorted {
+impl ViewSort {
     fn words(&self) -> u32 {
         self.marks + 4 * self.held.start as u32
     }

@@ -1,11 +1,11 @@
 //! Search of the primitives in rectangles of the screen without bins (strips of lines, blocks), as work of a board.
 //!
-//! [`Pass::keep`] stores a TRANSFORM in a part of memory: commands, and the bounding box of each. [`Searching`] finds
+//! [`Pass::keep`] stores a TRANSFORM in a part of memory: commands, and the bounding box of each. [`WindowSearchWork`] finds
 //! the primitives in each window of an order, and lists the messages that draw the window. The code is
 //! kernels/windows.s, by the project's own rules (kernels/windows_rules.md). By the timing table each entry of a window
 //! takes `bin_entry_ns`.
 
-use crate::begin::Beginning;
+use crate::begin::PassStartWork;
 use crate::code::{Next, budget, sphere_kernel};
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
@@ -139,18 +139,18 @@ impl Pass {
         let kernel = self.kernel(processor.version()).filter(|kernel| !kernel.binned);
         let Some(kernel) = kernel.map(|kernel| Kernel { keeps_boxes: true, ..kernel }) else { return Ok(None) };
         let beginning = self.beginning_without_bins().by_code(timing, processor)?;
-        let of_kernels = self.keep_what(processor, kernel, part, |processor, first| {
+        let of_kernels = self.keep_commands(processor, kernel, part, |processor, first| {
             self.run_triangles(processor, kernel, first, None)
         })?;
         Ok(Some(beginning + of_kernels))
     }
 
-    pub(crate) fn beginning_without_bins(&self) -> Beginning {
-        Beginning::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
+    pub(crate) fn beginning_without_bins(&self) -> PassStartWork {
+        PassStartWork::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
     }
 
     /// Keeps the output of `triangles` in a part of memory, followed by all spheres.
-    pub(crate) fn keep_what(
+    pub(crate) fn keep_commands(
         &self,
         processor: &mut Processor,
         kernel: Kernel,
@@ -184,7 +184,7 @@ impl Pass {
 
 /// Work of searching a kept pass for the primitives in some windows.
 #[derive(Clone, Copy, Debug)]
-pub struct Searching<'a> {
+pub struct WindowSearchWork<'a> {
     /// Part of memory with the kept pass.
     pub part: MemoryPart,
     /// Picture of the kept pass.
@@ -197,7 +197,7 @@ pub struct Searching<'a> {
     pub counts: &'a [PrimitiveCounts],
 }
 
-impl Work for Searching<'_> {
+impl Work for WindowSearchWork<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
         TransformCost { entries: u64::from(self.entries()), ..TransformCost::default() }.span(timing)
     }
@@ -213,7 +213,7 @@ pub struct SearchOutput {
     /// Simulated time of all steps.
     pub span: Span,
     /// Simulated time of the handover, which is included in `span`.
-    pub of_handing: Span,
+    pub handoff_span: Span,
     /// Number of messages of each window.
     pub messages: Vec<u32>,
 }
@@ -229,7 +229,7 @@ impl SearchOutput {
     }
 }
 
-impl Searching<'_> {
+impl WindowSearchWork<'_> {
     fn entries(&self) -> u32 {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
@@ -242,7 +242,7 @@ impl Searching<'_> {
     pub fn run_code(&self, processor: &mut Processor) -> Result<Option<SearchOutput>, ProcessorFault> {
         let Some(kept) = Kept::noted(processor, self.part)? else { return Ok(None) };
         self.check_room(processor)?;
-        let mut output = SearchOutput { span: Span::ZERO, of_handing: Span::ZERO, messages: Vec::new() };
+        let mut output = SearchOutput { span: Span::ZERO, handoff_span: Span::ZERO, messages: Vec::new() };
         // A window across regions may find primitives that touch none of its regions, so the regions are tested too.
         if self.lies_across_regions() {
             output.span +=
@@ -255,7 +255,7 @@ impl Searching<'_> {
             output.span += self.search(processor, &kept, counts)?;
             for window in 0..windows.len() {
                 let span = hand_over(processor, window as u32, &mut next, counts.get(window))?;
-                output.of_handing += span;
+                output.handoff_span += span;
                 output.span += span;
                 output.messages.push(processor.register(16));
             }
@@ -263,7 +263,7 @@ impl Searching<'_> {
         Ok(Some(output))
     }
 
-    /// Checks that entries and messages fit. They have the same room as the entries of a region in [`crate::Handing`].
+    /// Checks that entries and messages fit. They have the same room as the entries of a region in [`crate::BinHandoffWork`].
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =

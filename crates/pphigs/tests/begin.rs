@@ -3,7 +3,7 @@
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{
-    DisplayList, DisplayStructure, Editing, EyeView, FrameView, ModelEdit, ModelFrame, Picture, PlacedStructure,
+    DisplayList, DisplayStructure, EditWork, EyeView, FrameView, ModelEdit, ModelFrame, Picture, PlacedStructure,
     RegionBinning, Shading, Share, place_all,
 };
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, PARAMETER_WORDS, Schedule};
@@ -150,7 +150,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
             (0..count).map(|n| ModelEdit { structure: (7 * n + count) as u32 % 40, model: numbers.model(n) }).collect();
         edits.iter().for_each(|edit| models[edit.structure as usize] = edit.model.to_cols_array().map(f32::to_bits));
         let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
-        let span = Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+        let span = EditWork(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
         assert!(span > pxpl5_sim::Span::ZERO);
         assert!(processor.read(MODELS, 40 * 16).expect("in memory") == models.concat(), "{count} edits");
     }
@@ -162,7 +162,7 @@ fn edits_of_structures_that_are_not_there_change_nothing() {
     let edits = vec![ModelEdit { structure: u32::MAX, model: Mat4::IDENTITY }];
     let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
     let mut processor = board();
-    Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
+    EditWork(&view).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
     assert!(processor.read(MODELS, 1 << 10).expect("in memory").iter().all(|word| *word == 0));
 }
 

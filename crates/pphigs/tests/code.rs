@@ -4,7 +4,7 @@
 use glam::{Mat4, Vec3};
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
-    RegionBinning, RegionEnvelope, Shading, Share, Transforming, region_messages,
+    RegionBinning, RegionEnvelope, Shading, Share, TransformWork, region_messages,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
@@ -205,7 +205,7 @@ fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
     let made = pass.run_code(&mut processor, 0).expect("it returns").expect("a kernel");
     assert_eq!(made.entries(), pass.entries());
     let timing = GpTiming { triangle_ns: 1_000_000, sphere_ns: 50_000, bin_entry_ns: 700, ..GpTiming::PAPERS };
-    let work = Transforming { passes: &[Arc::clone(&pass)], context: 0, begins: true };
+    let work = TransformWork { passes: &[Arc::clone(&pass)], context: 0, begins: true };
     let span = work.by_code(&timing, &mut board(CodeVersion::Scheduled, &share)).expect("it returns");
     assert_eq!(span, begun + made.span);
 }
@@ -216,7 +216,7 @@ fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
     let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 64, region_height: 64 };
     let viewport = Viewport::new(grid, pxpl5_wire::Lines::Frame).expect("a valid picture");
     let passes = [share.transform(&view(), 0, picture(viewport, Shading::Phong, RegionBinning::Touched))];
-    let work = Transforming { passes: &passes, context: 0, begins: false };
+    let work = TransformWork { passes: &passes, context: 0, begins: false };
     let span = work.by_code(&GpTiming::PAPERS, &mut board(CodeVersion::Compiled, &share)).expect("it returns");
     assert_eq!(span, work.by_table(&GpTiming::PAPERS));
 }
@@ -319,7 +319,7 @@ fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
                 assert!(found == native(pass, RegionId(0)), "{version:?}");
             }
             let passes = [left, right];
-            let together = Transforming { passes: &passes, context: 0, begins: false };
+            let together = TransformWork { passes: &passes, context: 0, begins: false };
             let together = together.by_code(&GpTiming::PAPERS, &mut processor).expect("it returns");
             let alone =
                 [0, 1].map(|eye| passes[eye].run_code(&mut processor, 0).expect("it returns").expect("code").span);

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 use pphigs::{
-    DisplayList, DisplayStructure, EyeView, FrameView, Handing, ModelFrame, Pass, Picture, RegionBinning,
+    BinHandoffWork, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Pass, Picture, RegionBinning,
     RegionEnvelope, Shading, Share, region_messages,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
@@ -10,7 +10,7 @@ use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, SplitMix64};
 use pxpl5_wire::{
-    CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, NodeId, PictureNumber, RegionGrid, RegionId, ViewNumber, Word,
+    CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, ViewNumber, Word,
 };
 use std::sync::Arc;
 
@@ -60,7 +60,7 @@ fn order(region: RegionId) -> CopyOrder {
         region,
         picture: PictureNumber::FIRST,
     };
-    CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
+    CopyOrder { target, context: 0, way: CopyPath::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
 }
 
 fn envelopes(region: RegionId) -> [RegionEnvelope; 4] {
@@ -78,10 +78,10 @@ fn compare(
     region: RegionId,
     envelope: RegionEnvelope,
 ) -> usize {
-    let handing = Handing { pass, context, view: 0, region, envelope };
+    let handing = BinHandoffWork { pass, context, view: 0, region, envelope };
     let span = handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
     assert!(span > Span::ZERO);
-    let found = Handing::listed(processor).expect("in memory");
+    let found = BinHandoffWork::listed(processor).expect("in memory");
     let expected = region_messages(pass, region, 0, envelope);
     assert_eq!(found.len(), expected.len(), "messages of region {region:?} with {envelope:?}");
     for (pieces, list) in found.iter().zip(&expected) {
@@ -142,7 +142,8 @@ fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
     let pass = pass(&share, 0.1, Shading::Gouraud, Layout::slats(), RegionBinning::Touched);
     let full = (0..20).map(RegionId).find(|region| pass.counts(*region).total() as usize == triangles).expect("in one");
     let mut processor = Processor::new(NodeId(7), 64 << 20, CodeVersion::Scheduled, i860::Config::cycle());
-    let handing = Handing { pass: &pass, context: 1, view: 0, region: full, envelope: RegionEnvelope::default() };
+    let handing =
+        BinHandoffWork { pass: &pass, context: 1, view: 0, region: full, envelope: RegionEnvelope::default() };
     let fault = handing.by_code(&GpTiming::PAPERS, &mut processor).expect_err("too many");
     let (needed_bytes, available_bytes) = (8 * triangles as u32, 8 * 44_236);
     assert_eq!(fault, ProcessorFault::NoRoom { gp: NodeId(7), context: 1, needed_bytes, available_bytes });
@@ -155,7 +156,7 @@ fn by_the_published_table_it_is_part_of_a_message() {
     let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
     let regions = (0..20).map(RegionId);
     let region = regions.max_by_key(|region| pass.counts(*region).total()).expect("twenty");
-    let handing = Handing { pass: &pass, context: 0, view: 0, region, envelope: RegionEnvelope::default() };
+    let handing = BinHandoffWork { pass: &pass, context: 0, view: 0, region, envelope: RegionEnvelope::default() };
     assert_eq!(handing.by_table(&GpTiming::PAPERS), Span::ZERO);
     let entries = u64::from(pass.counts(region).total());
     assert!(entries > 0);
@@ -169,6 +170,6 @@ fn without_bins_of_code_nothing_is_handed_over() {
     let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
     let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
     let handing =
-        Handing { pass: &pass, context: 0, view: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
+        BinHandoffWork { pass: &pass, context: 0, view: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
     assert_eq!(handing.by_code(&GpTiming::PAPERS, &mut processor), Ok(Span::ZERO));
 }

@@ -187,7 +187,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
                     let (expected, stats) = native(kernel, &view, viewport, &input);
                     assert!(stats.clipped > 200 && stats.outside > 100 && stats.screen_triangles > 100, "{stats:?}");
                     flattened += stats.flattened_planes;
-                    let mut bench = Bench::in_view(kernel, &view, viewport, &input);
+                    let mut bench = Bench::in_eye_space(kernel, &view, viewport, &input);
                     bench.run();
                     assert_same_output(&bench.output(), &expected, kernel);
                 }
@@ -299,7 +299,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
             for kernel in [kernel, Kernel { culls: true, ..kernel }] {
                 let (expected, stats) = native(kernel, &view, viewport, &input);
                 assert!(stats.clipped > 200 && stats.screen_triangles > 100, "{stats:?}");
-                let mut bench = Bench::in_view(kernel, &view, viewport, &input);
+                let mut bench = Bench::in_eye_space(kernel, &view, viewport, &input);
                 bench.run();
                 assert_same_output(&bench.output(), &expected, kernel);
             }

@@ -3,8 +3,8 @@
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use pphigs::{
-    DisplayList, DisplayStructure, EyeView, FrameView, Handing, ModelEdit, ModelFrame, Pass, Picture, RegionBinning,
-    RegionEnvelope, Shading, Share, Surrounding, SurroundingOutput, region_messages,
+    BinHandoffWork, CubeTransform, CubeTransformOutput, DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit,
+    ModelFrame, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
 };
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
@@ -120,8 +120,8 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
     processor
 }
 
-fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> SurroundingOutput {
-    let surrounding = Surrounding { passes, context };
+fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> CubeTransformOutput {
+    let surrounding = CubeTransform { passes, context };
     surrounding.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
 }
 
@@ -136,9 +136,9 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
 
 /// Returns the words of a region's primitives as a token hands them over.
 fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
-    let handing = Handing { pass, context, view, region, envelope: RegionEnvelope::default() };
+    let handing = BinHandoffWork { pass, context, view, region, envelope: RegionEnvelope::default() };
     handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
-    let messages = Handing::listed(processor).expect("in memory");
+    let messages = BinHandoffWork::listed(processor).expect("in memory");
     let words = |[at, words]: [Word; 2]| processor.read(at, words as usize).expect("in memory");
     messages.into_iter().flatten().flat_map(words).collect()
 }
@@ -159,7 +159,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
             let other = self::passes(&share, &views(&mut numbers, scale), shading, face(texels));
             let made = run(&mut processor, &passes, 0);
             run(&mut processor, &other, 1);
-            assert!(made.of_sorting > Span::ZERO && made.of_beginning > Span::ZERO);
+            assert!(made.sort_span > Span::ZERO && made.start_span > Span::ZERO);
             let mut drawn = 0;
             for (context, passes) in [(0, &passes), (1, &other)] {
                 for (view, pass) in (0..).zip(passes) {
@@ -205,7 +205,7 @@ fn views_without_room_for_all_of_them_are_refused() {
     let memory = (1 << 20) + share.bytes() + 4 * 500 + 1000;
     let mut small = Processor::new(NodeId(4), memory, CodeVersion::Compiled, i860::Config::cycle());
     share.install(&mut small).expect("it fits");
-    let surrounding = Surrounding { passes: &passes, context: 0 };
+    let surrounding = CubeTransform { passes: &passes, context: 0 };
     let fault = surrounding.run_code(&GpTiming::PAPERS, &mut small).expect_err("a thousand bytes for all commands");
     assert!(matches!(fault, ProcessorFault::NoRoom { context: 0, .. }), "{fault}");
 }

@@ -47,7 +47,7 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 
 /// Assignment of cells to memories, by rings around the home cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dealing {
+pub struct CellAssignment {
     /// The home cell, around which cells are assigned.
     pub home: Cell,
     /// Side of a cell in metres.
@@ -61,7 +61,7 @@ pub struct Dealing {
     pub memories: usize,
 }
 
-impl Dealing {
+impl CellAssignment {
     /// Returns the memory of a cell.
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
@@ -71,7 +71,7 @@ impl Dealing {
 
     /// Returns the outermost ring of memory k, unless k is the slowest memory, which has no outer limit.
     ///
-    /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`Dealing::ring_growth`].
+    /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
     pub fn last_ring(&self, memory: usize) -> u64 {
         let next = |(rings, of_memory): (u64, u64)| {
@@ -119,7 +119,7 @@ impl Dealing {
 /// State of the policy: the assignment of cells, and the position each memory was drawn from.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    dealing: Dealing,
+    dealing: CellAssignment,
     threshold: Threshold,
     has_cascade: bool,
     to_held_cells: bool,
@@ -136,7 +136,7 @@ impl Cells {
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
         // The first frame assigns the cells around the real home cell.
-        let dealing = Dealing {
+        let dealing = CellAssignment {
             home: Cell { x: 0, z: 0 },
             side_m: timing.cell_m,
             inner_rings: timing.inner_rings,
@@ -155,7 +155,7 @@ impl Cells {
 
     /// Returns the current assignment of cells to memories.
     #[must_use]
-    pub const fn dealing(&self) -> &Dealing {
+    pub const fn dealing(&self) -> &CellAssignment {
         &self.dealing
     }
 

@@ -14,7 +14,7 @@
 //! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than an
 //!   angle. The causes are: the eye has moved (chord or sine), the object appears larger (disc or sphere), the object
 //!   is animated, or the object rotates. A rotation of the head never makes an image wrong. A face that is out of sight
-//!   can wait ([`until_in_sight_s`]).
+//!   can wait ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
 //!   every 2^k frames. An object changes memories only in a frame that draws both, and both are shown together.
 //! - **Cells** ([`Cells`]): the world is cut into square columns. The ring of a cell around the home cell determines
@@ -55,12 +55,12 @@ mod validity;
 mod warp;
 
 pub use account::{draws_per_s, saved_percent};
-pub use cells::{Cell, Cells, Dealing};
+pub use cells::{Cell, CellAssignment, Cells};
 pub use config::PriorityTiming;
 pub use error::PriorityError;
 pub use objects::Objects;
 pub use segment::{CutVertex, Segmentation};
-pub use sight::{angle_to_face, mean_faces_touched, until_in_sight_s};
+pub use sight::{angle_to_face, mean_faces_touched, time_until_visible_s};
 pub use update::Update;
-pub use validity::{Distance, SeenObject, SizeRule, Threshold, Translation, ValidityPeriod, level};
+pub use validity::{Distance, ObjectView, SizeRule, Threshold, Translation, ValidityPeriod, level};
 pub use warp::{Falloff, RegionWarp};

@@ -1,6 +1,6 @@
 //! Segmentation: a mesh is cut at the borders of cells, once, so that only near parts need frequent drawing.
 
-use crate::cells::{Cell, Dealing, border, column};
+use crate::cells::{Cell, CellAssignment, border, column};
 use crate::error::PriorityError;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ impl Segmentation {
 
     /// Returns the memory of an uncut mesh: the fastest memory of all its cells. `None` for an empty mesh.
     #[must_use]
-    pub fn fastest_memory(&self, dealing: &Dealing) -> Option<usize> {
+    pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()
     }
 }

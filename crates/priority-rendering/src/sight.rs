@@ -40,7 +40,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 ///
 /// The picture extends `half_diagonal` radians from its middle. The head rotates by at most `fastest_turn` rad/s.
 #[must_use]
-pub fn until_in_sight_s(view: DVec3, face: DVec3, half_diagonal: f64, fastest_turn: f64) -> f64 {
+pub fn time_until_visible_s(view: DVec3, face: DVec3, half_diagonal: f64, fastest_turn: f64) -> f64 {
     (angle_to_face(view, face) - half_diagonal).max(0.0) / fastest_turn
 }
 

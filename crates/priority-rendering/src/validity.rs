@@ -50,7 +50,7 @@ pub enum Distance {
 
 /// An object as seen from an eye: its bounding sphere and its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeenObject {
+pub struct ObjectView {
     /// Distance between the eye and the sphere's middle, in metres.
     pub distance_m: f64,
     /// Radius of the sphere in metres.
@@ -106,7 +106,7 @@ impl Threshold {
     ///
     /// With [`SizeRule::Sphere`], the result is 0 inside the bounding sphere.
     #[must_use]
-    pub fn way_of_size(&self, distance_m: f64, radius_m: f64) -> f64 {
+    pub fn max_approach(&self, distance_m: f64, radius_m: f64) -> f64 {
         let quarter = std::f64::consts::FRAC_PI_2;
         match self.size {
             SizeRule::Disc => {
@@ -134,7 +134,7 @@ impl Threshold {
     /// A rotation of the head never makes an image wrong. From inside the bounding sphere, an image is wrong
     /// immediately.
     #[must_use]
-    pub fn period(&self, object: &SeenObject) -> ValidityPeriod {
+    pub fn period(&self, object: &ObjectView) -> ValidityPeriod {
         let nearest = (object.distance_m - object.radius_m).max(0.0);
         let counted = if self.distance == Distance::Nearest { nearest } else { object.distance_m };
         // Inside the bounding sphere, images are never valid.
@@ -143,7 +143,7 @@ impl Threshold {
         }
         ValidityPeriod {
             translation_s: time_of(self.way(counted), object.speed),
-            size_s: time_of(self.way_of_size(object.distance_m, object.radius_m), object.speed),
+            size_s: time_of(self.max_approach(object.distance_m, object.radius_m), object.speed),
             animation_s: object.animation_s,
             turn_s: self.turn_s(nearest, object.radius_m, object.turn),
         }

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3Swizzles};
 use priority_rendering::{
-    Cell, Dealing, Distance, Falloff, PriorityTiming, RegionWarp, SeenObject, SizeRule, Threshold, Translation, Update,
-    angle_to_face, draws_per_s, level, mean_faces_touched, saved_percent, until_in_sight_s,
+    Cell, CellAssignment, Distance, Falloff, ObjectView, PriorityTiming, RegionWarp, SizeRule, Threshold, Translation,
+    Update, angle_to_face, draws_per_s, level, mean_faces_touched, saved_percent, time_until_visible_s,
 };
 
 fn threshold() -> Threshold {
@@ -45,16 +45,16 @@ fn case_17_distances_of_levels() {
 fn cases_18_and_19_size() {
     let disc = threshold();
     for (c, r, ms) in [(5.0, 1.0, 78.5621), (10.0, 5.0, 76.2315), (1.0, 5.0, 15.9437)] {
-        near(1e3 * disc.way_of_size(c, r), ms, 1e-4);
+        near(1e3 * disc.max_approach(c, r), ms, 1e-4);
     }
     let sphere = Threshold { size: SizeRule::Sphere, ..disc };
     for (c, r, ms) in [(5.0, 1.0, 74.0137), (5.0, 4.0, 11.4550), (2.0, 1.9, 2.00535)] {
-        near(1e3 * sphere.way_of_size(c, r), ms, 1e-4);
+        near(1e3 * sphere.max_approach(c, r), ms, 1e-4);
     }
     // The angle reaches 90 degrees, so the limit is the remaining distance.
-    near(disc.way_of_size(1e-3, 5.0), 1e-3, 0.0);
-    near(sphere.way_of_size(5.000_001, 5.0), 1e-6, 1e-12);
-    near(sphere.way_of_size(4.0, 5.0), 0.0, 0.0);
+    near(disc.max_approach(1e-3, 5.0), 1e-3, 0.0);
+    near(sphere.max_approach(5.000_001, 5.0), 1e-6, 1e-12);
+    near(sphere.max_approach(4.0, 5.0), 0.0, 0.0);
 }
 
 /// A8: with a disc, size never decides. With a sphere, it decides for 2 r > 1.411 c. Neither gives the printed factor
@@ -63,7 +63,7 @@ fn cases_18_and_19_size() {
 fn size_never_decides_with_a_disc_and_from_1_411_distances_on_with_a_sphere() {
     let decides = |size: SizeRule, diameter: f64| {
         let threshold = Threshold { size, ..threshold() };
-        threshold.way_of_size(1.0, diameter / 2.0) < threshold.way(1.0)
+        threshold.max_approach(1.0, diameter / 2.0) < threshold.way(1.0)
     };
     for diameter in (1..200).map(|n| f64::from(n) * 0.1) {
         assert!(!decides(SizeRule::Disc, diameter), "{diameter}");
@@ -84,7 +84,7 @@ fn case_20_an_object_that_turns() {
 fn case_21_faces_out_of_sight() {
     let half_diagonal = (400.0_f64 / (320.0 / 30_f64.to_radians().tan())).atan();
     let turn = PriorityTiming::PAPERS.fastest_turn_deg_per_s.to_radians();
-    let wait = |face| 1e3 * until_in_sight_s(DVec3::NEG_Z, face, half_diagonal, turn);
+    let wait = |face| 1e3 * time_until_visible_s(DVec3::NEG_Z, face, half_diagonal, turn);
     near(wait(DVec3::Z), 241.748, 5e-4);
     near(wait(DVec3::X), 24.8175, 5e-5);
     near(wait(DVec3::NEG_Z), 0.0, 0.0);
@@ -132,8 +132,8 @@ fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
     near(angle_to_face(DVec3::ONE, DVec3::NEG_X), (1.0_f64 / 3.0).acos(), 1e-12);
 }
 
-fn dealing() -> Dealing {
-    Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 }
+fn dealing() -> CellAssignment {
+    CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 }
 }
 
 #[test]
@@ -165,14 +165,14 @@ fn cases_23_and_24_cells_and_their_memories() {
 /// Memory k begins behind q + 1 + g + ... + g^(k-2) rings. With g = 2 these are 1, 2 and 4 rings.
 #[test]
 fn rings_that_double_begin_one_two_and_four_rings_away() {
-    let doubling = Dealing { ring_growth: 2, ..dealing() };
+    let doubling = CellAssignment { ring_growth: 2, ..dealing() };
     assert_eq!([0, 1, 2].map(|memory| doubling.last_ring(memory)), [1, 2, 4]);
     let memories = (0..=7).map(|ring| doubling.memory(Cell { x: -ring, z: 0 })).collect::<Vec<_>>();
     assert_eq!(memories, [0, 0, 1, 2, 2, 3, 3, 3]);
     let eye = at(2.0, 1.0);
     assert_eq!([1, 2, 3].map(|memory| doubling.distance(eye, memory)), [6.0, 11.0, 21.0]);
     assert_eq!([0, 1, 2, 3].map(|memory| doubling.to_slower(eye, memory)), [Some(6.0), Some(11.0), Some(21.0), None]);
-    let eight = Dealing { memories: 8, ..doubling };
+    let eight = CellAssignment { memories: 8, ..doubling };
     assert_eq!(eight.last_ring(6), 64);
     assert_eq!(eight.memory(Cell { x: 64, z: 0 }), 6);
     assert_eq!(eight.memory(Cell { x: 65, z: 0 }), 7);
@@ -248,27 +248,27 @@ fn chord_and_sine() {
 
 #[test]
 fn periods_of_objects() {
-    let still = SeenObject { distance_m: 5.0, radius_m: 1.0, speed: 0.0, turn: 0.0, animation_s: f64::INFINITY };
+    let still = ObjectView { distance_m: 5.0, radius_m: 1.0, speed: 0.0, turn: 0.0, animation_s: f64::INFINITY };
     assert_eq!(threshold().period(&still).least(), f64::INFINITY);
-    assert_eq!(threshold().period(&SeenObject { distance_m: 0.9, ..still }).least(), 0.0, "inside");
-    assert_eq!(threshold().period(&SeenObject { animation_s: 0.25, ..still }).least(), 0.25);
-    let walking = threshold().period(&SeenObject { speed: 1.0, ..still });
+    assert_eq!(threshold().period(&ObjectView { distance_m: 0.9, ..still }).least(), 0.0, "inside");
+    assert_eq!(threshold().period(&ObjectView { animation_s: 0.25, ..still }).least(), 0.25);
+    let walking = threshold().period(&ObjectView { speed: 1.0, ..still });
     near(1e3 * walking.size_s, 78.5621, 1e-4);
     near(walking.least(), threshold().way(4.0), 1e-15);
-    assert_eq!(threshold().period(&SeenObject { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
+    assert_eq!(threshold().period(&ObjectView { distance_m: 1.0, ..still }).least(), 0.0, "on its surface");
 }
 
 /// Checks the validity periods of the specification (3.6): the relevant distance for translation, and for a rotating
 /// object.
 #[test]
 fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
-    let seen = SeenObject { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
+    let seen = ObjectView { distance_m: 5.0, radius_m: 0.5, speed: -2.0, turn: -0.5, animation_s: f64::INFINITY };
     let theta = (90.0_f64 / 512.0).to_radians();
     for (distance, counted) in [(Distance::Nearest, 4.5), (Distance::Centre, 5.0)] {
         let period = Threshold { distance, ..threshold() }.period(&seen);
         near(period.translation_s, 2.0 * counted * (theta / 2.0).sin() / 2.0, 1e-12);
         near(period.turn_s, 2.0 / 0.5 * (4.5 * theta.sin() / (2.0 * 0.5)).asin(), 1e-12);
-        near(period.size_s, threshold().way_of_size(5.0, 0.5) / 2.0, 1e-15);
+        near(period.size_s, threshold().max_approach(5.0, 0.5) / 2.0, 1e-15);
         assert_eq!(period.animation_s, f64::INFINITY);
     }
 }

@@ -1,7 +1,7 @@
 //! Meshes cut at cells: nothing is lost or duplicated, and cuts are shared bit by bit.
 
 use glam::DVec3;
-use priority_rendering::{Cell, Dealing, Segmentation};
+use priority_rendering::{Cell, CellAssignment, Segmentation};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
@@ -95,7 +95,8 @@ fn a_wall_is_cut_in_three() {
     }
     // The bottom, the top and the diagonal are each cut at x = 5 and x = 10.
     assert_eq!(cut.cuts.len(), 6);
-    let dealing = Dealing { home: Cell { x: 4, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
+    let dealing =
+        CellAssignment { home: Cell { x: 4, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
     assert_eq!(cut.fastest_memory(&dealing), Some(1), "as its nearest cell, two rings away");
 }
 
@@ -128,7 +129,8 @@ fn a_corner_on_a_border_is_not_made_again() {
 
 #[test]
 fn an_empty_mesh_is_in_no_memory() {
-    let dealing = Dealing { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
+    let dealing =
+        CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 5.0, inner_rings: 1, ring_growth: 1, memories: 4 };
     let mesh = |x: f64| {
         let corners = [0.0, 1.0, 2.0].map(|along| DVec3::new(x + along, along * along, 1.0));
         Segmentation::new(&corners, &[[0, 1, 2]], 5.0).expect("cut").fastest_memory(&dealing)

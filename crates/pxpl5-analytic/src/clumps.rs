@@ -1,6 +1,6 @@
 //! TRANSFORM and RENDER of Slats on one GP, for several configurations at once.
 
-use super::model::{MOST_CHANNELS, PerTriangle, REGIONS, SlatsModel};
+use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
@@ -16,7 +16,7 @@ pub(super) fn render<const N: usize>(
 ) -> [Times<N>; 2] {
     let clumps = (triangles / CLUMP as f64).ceil().max(1.0) as usize;
     let size = |clump: usize| (triangles - (clump * CLUMP) as f64).min(CLUMP as f64);
-    let sending = Sending::of(models);
+    let sending = MessageCosts::of(models);
     let message = Times::each(|i| models[i].message_ns);
     let mut clump = Clump::first(models, &sending, size(0), each);
     // The processor receives the host's next view once per field, during TRANSFORM.
@@ -36,7 +36,7 @@ pub(super) fn render<const N: usize>(
 }
 
 /// The part of a message's cost that does not depend on its content.
-struct Sending<const N: usize> {
+struct MessageCosts<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
     hop: Times<N>,
@@ -46,7 +46,7 @@ struct Sending<const N: usize> {
     command: Costs<N>,
 }
 
-impl<const N: usize> Sending<N> {
+impl<const N: usize> MessageCosts<N> {
     #[inline(always)]
     fn of(models: &[SlatsModel; N]) -> Self {
         Self {
@@ -83,7 +83,7 @@ struct Clump<const N: usize> {
 impl<const N: usize> Clump<N> {
     /// Returns the first clump of a field.
     #[inline(always)]
-    fn first(models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
+    fn first(models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
         let transform = Times::each(|i| models[i].clump_ns(triangles, each));
         let behind_itself = message.room_behind(&message);
@@ -92,7 +92,7 @@ impl<const N: usize> Clump<N> {
 
     /// Returns a later clump that follows this one.
     #[inline(always)]
-    fn next(&self, models: &[SlatsModel; N], sending: &Sending<N>, triangles: f64, each: PerTriangle) -> Self {
+    fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
         let transform = Times::each(|i| models[i].clump_ns(triangles, each));
         let behind_last = message.room_behind(&self.message);
@@ -117,7 +117,7 @@ impl<const N: usize> Chain<N> {
 
     /// Sends the messages of one clump. A port sends on several channels at a time.
     #[inline(always)]
-    fn send(&mut self, arrays: &mut [Array<N>], sending: &Sending<N>, clump: &Clump<N>) {
+    fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
         let mut granted = self.cpu;
         let mut accepted = self.cpu;
@@ -146,14 +146,14 @@ impl<const N: usize> Chain<N> {
 /// Times at which the channels of a port are free: the earliest one, then the others in ascending order.
 struct Channels<const N: usize> {
     soonest: Times<N>,
-    others: [Times<N>; MOST_CHANNELS - 1],
+    others: [Times<N>; MAX_CHANNELS - 1],
     number: usize,
 }
 
 impl<const N: usize> Channels<N> {
     const fn new(number: usize) -> Self {
         let free = Times::all(f64::MIN);
-        Self { soonest: free, others: [free; MOST_CHANNELS - 1], number: number - 1 }
+        Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
     /// Returns a used channel, and sorts it into the others by the time at which it is free.

@@ -14,7 +14,7 @@ macro_rules! lanes {
 }
 
 /// Largest number of renderers that are modelled. There are 20 field regions, so further renderers would be idle.
-pub(super) const MOST_RENDERERS: usize = 20;
+pub(super) const MAX_RENDERERS: usize = 20;
 
 /// Copies that a renderer has to make, two bits each, with the first copy in the lowest bits.
 ///
@@ -40,7 +40,7 @@ impl Queue {
     /// Returns the same copies, alternating between left and right as long as both remain.
     ///
     /// The first copy is a right one if `begins_right` is true and there is one. Otherwise its side is unchanged.
-    pub(super) fn by_turns(self, begins_right: bool) -> Self {
+    pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
         // Count the copies of each side.
@@ -82,7 +82,7 @@ struct Ports<const N: usize> {
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
-    queues: &[Queue; MOST_RENDERERS],
+    queues: &[Queue; MAX_RENDERERS],
     region: Times<N>,
 ) -> [CopyTimes; N] {
     let mut left = *queues;
@@ -102,7 +102,7 @@ pub(super) fn make<const N: usize>(
 ///
 /// Returns `None` if the configurations differ, or if all copies are done.
 #[inline(always)]
-fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MOST_RENDERERS]) -> Option<usize> {
+fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MAX_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
     let there = |r: usize| arrays[r].free.0[0];
     // Candidate: the first renderer of configuration 0.
@@ -145,11 +145,11 @@ impl<const N: usize> Ports<N> {
 
     /// Makes the remaining copies in an order that may differ between configurations.
     #[inline(always)]
-    fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MOST_RENDERERS], region: Times<N>) {
+    fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
         let mut left = queues.map(|queue| [queue.0; N]);
         // Earliest start of each renderer's next copy, infinite if it has none.
-        let mut next = [never; MOST_RENDERERS];
+        let mut next = [never; MAX_RENDERERS];
         let waiting = arrays.iter().zip(&mut next).zip(queues).filter(|(_, queue)| queue.0 != 0);
         waiting.for_each(|((array, next), _)| *next = array.free.0);
         for _ in 0..queues.iter().map(|queue| queue.len()).sum::<u32>() {
@@ -229,7 +229,7 @@ mod tests {
     use super::*;
 
     fn times(order: [&[bool]; 5], region_ns: f64) -> CopyTimes {
-        let mut queues = [Queue::default(); MOST_RENDERERS];
+        let mut queues = [Queue::default(); MAX_RENDERERS];
         for (queue, boards) in queues.iter_mut().zip(order) {
             boards.iter().for_each(|right| queue.push(*right));
         }
@@ -254,9 +254,9 @@ mod tests {
         let mut queue = Queue::default();
         [false, false, true].into_iter().for_each(|right| queue.push(right));
         assert_eq!((queue, queue.len()), (Queue(0b11_01_01), 3));
-        assert_eq!([queue.by_turns(false), queue.by_turns(true)], [Queue(0b01_11_01), Queue(0b01_01_11)]);
+        assert_eq!([queue.alternated(false), queue.alternated(true)], [Queue(0b01_11_01), Queue(0b01_01_11)]);
         let mut one_side = Queue::default();
         one_side.push(false);
-        assert_eq!(one_side.by_turns(true), one_side);
+        assert_eq!(one_side.alternated(true), one_side);
     }
 }

@@ -66,7 +66,7 @@ impl Load {
         // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-        let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
+        let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let share = Share::new(list, 0, 1);
         let layout = Layout::rendering_control_phong();
         let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };

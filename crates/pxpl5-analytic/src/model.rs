@@ -1,13 +1,13 @@
 //! Slats on a machine, reduced to numbers.
 
-use super::copies::{CopyTimes, MOST_RENDERERS, Queue};
+use super::copies::{CopyTimes, MAX_RENDERERS, Queue};
 use super::renderer::Cost;
 use crate::{no_form, video_of};
 use pphigs::TransformCost;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{DuePictures, PictureEnd, Pipeline, Slats, WARM_UP_PERIODS};
+use pxpl5_run::{DuePictures, PictureResult, Pipeline, Slats, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
@@ -16,7 +16,7 @@ use pxpl5_wire::{PeriodNumber, RegionGrid};
 pub(super) const REGIONS: usize = 20;
 
 /// Largest number of channels of a ring.
-pub(super) const MOST_CHANNELS: usize = 8;
+pub(super) const MAX_CHANNELS: usize = 8;
 
 /// Channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
@@ -133,11 +133,11 @@ impl SlatsModel {
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
             field_ns,
             bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6),
-            renderers: config.n_renderers.min(MOST_RENDERERS),
+            renderers: config.n_renderers.min(MAX_RENDERERS),
             gps: config.n_gps,
             source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
                 as usize)
-                .clamp(1, MOST_CHANNELS),
+                .clamp(1, MAX_CHANNELS),
             fifo_channels: (config.ring.fifo_channels.min(config.ring.channels) as usize).max(1),
             split: program.copy.is_split(),
         })
@@ -161,7 +161,7 @@ impl SlatsModel {
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
         let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
         // A field is drawn in one field and scanned in the next, so its scan ends two fields after its view was taken.
-        let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
+        let end = PictureResult::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
         let messages = if self.split { 2.0 } else { 1.0 };
         let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
         // Fields before the window fill the pipeline.
@@ -170,8 +170,8 @@ impl SlatsModel {
     }
 
     /// Returns the copies that each renderer makes, for the regions that `wanted` selects.
-    pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MOST_RENDERERS] {
-        let mut queues = [Queue::default(); MOST_RENDERERS];
+    pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MAX_RENDERERS] {
+        let mut queues = [Queue::default(); MAX_RENDERERS];
         let per_half = REGIONS / 4;
         // Alternate between left and right eye. Odd renderers of a split copy begin with the right eye if possible.
         let regions = (0..REGIONS).zip((0..self.renderers).cycle());
@@ -180,7 +180,7 @@ impl SlatsModel {
             queues[renderer].push(right);
         }
         for (renderer, queue) in queues.iter_mut().enumerate().take(self.renderers) {
-            *queue = queue.by_turns(self.split && renderer % 2 == 1);
+            *queue = queue.alternated(self.split && renderer % 2 == 1);
         }
         queues
     }

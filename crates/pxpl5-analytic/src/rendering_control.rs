@@ -9,8 +9,8 @@ use pxpl5_gp::{GpTiming, HostTiming};
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
-    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Samples,
-    Summary, WARM_UP_PICTURES, retraces,
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureResult, Pipeline, RenderingControl,
+    Samples, Summary, WARM_UP_PICTURES, retraces,
 };
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
@@ -454,6 +454,6 @@ impl StereoModel {
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
         // Frames after the last computed one are unknown.
         let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
-        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureEnd::Shown)), every, known)
+        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, known)
     }
 }

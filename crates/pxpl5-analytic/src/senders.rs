@@ -14,10 +14,10 @@
 //! The order of grants decides which renderers work at the same time, so the model processes all messages in this
 //! order. It uses the timing rules of ring, FIFO and firmware, but not their code.
 
-use super::copies::MOST_RENDERERS;
+use super::copies::MAX_RENDERERS;
 use super::model::{PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Cost, Times, later};
-use pphigs::{Picture, RegionBinning, Shading, Share, Transforming};
+use pphigs::{Picture, RegionBinning, Shading, Share, TransformWork};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Work;
 use pxpl5_renderer::Layout;
@@ -85,7 +85,7 @@ impl Clumps {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
         let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-        let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
+        let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let view = views(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);
         let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };
@@ -98,7 +98,7 @@ impl Clumps {
             }
             let clump = |(n, share): (usize, &Share)| {
                 let passes = [0, 1].map(|eye| share.transform(&view, eye, picture));
-                let work = Transforming { passes: &passes, context: 0, begins: n == 0 };
+                let work = TransformWork { passes: &passes, context: 0, begins: n == 0 };
                 // Order: all columns of the upper half for one eye and the other, then the same for the lower half.
                 let bins = std::array::from_fn(|region| {
                     let (kind, column) = (region / COLUMNS, region % COLUMNS);
@@ -207,7 +207,7 @@ struct Sender<'a> {
     accepted_ns: f64,
     /// Latest acceptance among the first messages to each renderer.
     draining_ns: f64,
-    served: [bool; MOST_RENDERERS],
+    served: [bool; MAX_RENDERERS],
 }
 
 impl Sender<'_> {
@@ -272,7 +272,7 @@ impl<'a> Ring<'a> {
                 cpu_ns: begin_ns[gp],
                 accepted_ns: if gp == 0 { accepted_ns } else { 0.0 },
                 draining_ns: 0.0,
-                served: [false; MOST_RENDERERS],
+                served: [false; MAX_RENDERERS],
             };
             self.next_clump(&mut sender);
             sender
@@ -294,7 +294,7 @@ impl<'a> Ring<'a> {
             cpu_ns: 0.0,
             accepted_ns: 0.0,
             draining_ns: 0.0,
-            served: [false; MOST_RENDERERS],
+            served: [false; MAX_RENDERERS],
         };
         self.clears = true;
         self.next_clump(&mut sender);
@@ -317,7 +317,7 @@ impl<'a> Ring<'a> {
                 sender.cpu_ns += self.model.message_ns;
                 sender.since_ns = sender.cpu_ns;
                 sender.draining_ns = 0.0;
-                sender.served = [false; MOST_RENDERERS];
+                sender.served = [false; MAX_RENDERERS];
                 return;
             }
         }

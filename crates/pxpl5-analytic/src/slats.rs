@@ -1,7 +1,7 @@
 //! Closed form of Slats for one field.
 
 use super::clumps;
-use super::copies::{self, CopyTimes, MOST_RENDERERS, Queue};
+use super::copies::{self, CopyTimes, MAX_RENDERERS, Queue};
 use super::model::{FieldTimes, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Times};
 use super::senders::{self, Clumps};
@@ -27,7 +27,7 @@ impl SlatsModel {
     /// Returns the times of a field in the steady state, with given clumps.
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
-        let mut arrays = [Array::idle(); MOST_RENDERERS];
+        let mut arrays = [Array::idle(); MAX_RENDERERS];
         let arrays = &mut arrays[..self.renderers];
         begin(models, arrays);
         let done = senders::render(self, arrays, clumps).map(Times::all);
@@ -68,7 +68,7 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
 /// Computes fields of machines with one GP and the same structure.
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
-    let mut arrays = [Array::idle(); MOST_RENDERERS];
+    let mut arrays = [Array::idle(); MAX_RENDERERS];
     let arrays = &mut arrays[..models[0].renderers];
     begin(models, arrays);
     let done = clumps::render(models, arrays, triangles, each);
@@ -115,7 +115,7 @@ fn copy<const N: usize>(
     models: &[SlatsModel; N],
     arrays: &mut [Array<N>],
     from: Times<N>,
-    queues: &[Queue; MOST_RENDERERS],
+    queues: &[Queue; MAX_RENDERERS],
 ) -> [CopyTimes; N] {
     // A message with two copies has 22 words: SelectRegion and CopyRegion take 11 words per region.
     let each = Times::<N>::each(|i| models[i].overhead_ns + 2.0 * 11.0 * models[i].word_ns);

@@ -4,7 +4,7 @@ use crate::world::World;
 use address_recalculation::FaceSet;
 use cube_faces::{CubeView, Drawing};
 use glam::DVec3;
-use priority_rendering::{Dealing, PriorityError, RegionWarp};
+use priority_rendering::{CellAssignment, PriorityError, RegionWarp};
 
 /// The data a display memory was drawn from. Its faces can be drawn later when they are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Content {
     /// Indices of the segments in the memory.
     pub segments: Vec<usize>,
     /// Displacement of vertices, if any: the warp, the assignment of cells, and the number of this memory.
-    pub warp: Option<(RegionWarp, Dealing, usize)>,
+    pub warp: Option<(RegionWarp, CellAssignment, usize)>,
 }
 
 impl Content {
@@ -49,10 +49,10 @@ impl Content {
 /// Returns the warp of a memory towards its slower neighbour, between the two eye positions `places`.
 pub(crate) fn warp(
     settings: &crate::settings::Settings,
-    dealing: &Dealing,
+    dealing: &CellAssignment,
     memory: usize,
     places: [DVec3; 2],
-) -> Result<Option<(RegionWarp, Dealing, usize)>, PriorityError> {
+) -> Result<Option<(RegionWarp, CellAssignment, usize)>, PriorityError> {
     let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_length_m(), places[0], places[1])?;
     Ok(Some((warp, *dealing, memory)))
 }

@@ -5,7 +5,7 @@ use crate::hall::{path_of, scaled};
 use crate::look::Faces;
 use crate::pictures::ahead;
 use crate::plan::Plan;
-use crate::report::{Looked, Report};
+use crate::report::{Report, ViewStatistics};
 use crate::settings::Settings;
 use crate::walk::{WalkTally, at_frames, walked};
 use crate::world::World;
@@ -70,7 +70,7 @@ impl WalkOutcome {
         let faces = Faces::of(&simulation)?;
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
-        let looked = Looked { stats, drawing: faces.drawing };
+        let looked = ViewStatistics { stats, drawing: faces.drawing };
         // Collect the report.
         let report = WalkReport {
             report: Report::of(&world, &settings, &tally, Some(&looked)),

@@ -53,7 +53,7 @@ pub use experiment::{WalkOutcome, WalkReport};
 pub use hall::{Route, path_of, scaled};
 pub use look::Faces;
 pub use plan::{Plan, WalkNumbers};
-pub use report::{Latency, Looked, MemoryReport, PriorityReport, Report, SCHEMA, TearsReport};
+pub use report::{Latency, MemoryReport, PriorityReport, Report, SCHEMA, TearsReport, ViewStatistics};
 pub use settings::{PolicyKind, Settings, SourceKind};
 pub use simulation::{FrameOutcome, Simulation};
 pub use tears::{Percentiles, Tears};

@@ -116,7 +116,7 @@ pub struct Latency {
 
 /// Statistics of a view at the end of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Looked {
+pub struct ViewStatistics {
     /// Statistics of the footprints in the view.
     pub stats: LookStats,
     /// Statistics of the faces drawn for the view.
@@ -126,7 +126,7 @@ pub struct Looked {
 impl Report {
     /// Creates the report of a walk, optionally with the statistics of a view at its end.
     #[must_use]
-    pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&Looked>) -> Self {
+    pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;
         let percentiles = |angles: &[f64]| Percentiles::of(angles, settings.texel_deg());
         Self {
@@ -225,7 +225,7 @@ impl MemoryReport {
     }
 }
 
-fn priority(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&Looked>) -> PriorityReport {
+fn priority(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> PriorityReport {
     let hz = settings.numbers.frame_hz;
     let is_cells = settings.policy == PolicyKind::Cells;
     let draws_per_s = tally.draws_per_s(hz);

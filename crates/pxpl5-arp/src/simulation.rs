@@ -6,7 +6,7 @@ use crate::settings::{PolicyKind, Settings, SourceKind};
 use crate::source::{Job, Queue};
 use crate::world::World;
 use glam::DVec3;
-use priority_rendering::{Cells, Dealing, Falloff, Objects, SeenObject, Threshold, Update};
+use priority_rendering::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
 
 /// The smallest thing that a policy assigns to a memory: an object, or a segment of one.
 #[derive(Clone, Debug)]
@@ -18,9 +18,9 @@ struct Unit {
 
 impl Unit {
     /// Returns the unit as an eye moving at `speed` m/s sees it.
-    fn seen(&self, eye: DVec3, speed: f64) -> SeenObject {
+    fn seen(&self, eye: DVec3, speed: f64) -> ObjectView {
         let distance_m = self.centre.distance(eye);
-        SeenObject { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
+        ObjectView { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
     }
 
     fn of(world: &World, segments: std::ops::Range<usize>) -> Self {
@@ -110,7 +110,7 @@ impl<'a> Simulation<'a> {
 
     /// Returns the current assignment of cells to memories, for the policy of cells.
     #[must_use]
-    pub const fn dealing(&self) -> Option<&Dealing> {
+    pub const fn dealing(&self) -> Option<&CellAssignment> {
         match &self.policy {
             Policy::Cells(cells) => Some(cells.dealing()),
             Policy::Full | Policy::Objects(_) => None,
@@ -216,7 +216,7 @@ impl<'a> Simulation<'a> {
         &self,
         memory: usize,
         eye: DVec3,
-    ) -> Result<Option<(priority_rendering::RegionWarp, Dealing, usize)>, ExperimentError> {
+    ) -> Result<Option<(priority_rendering::RegionWarp, CellAssignment, usize)>, ExperimentError> {
         let Policy::Cells(cells) = &self.policy else { return Ok(None) };
         let is_warped = self.settings.falloff != Falloff::None && self.settings.is_segmented;
         match cells.drawn_from(memory + 1) {

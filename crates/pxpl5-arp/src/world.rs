@@ -75,7 +75,7 @@ impl World {
     /// [`ExperimentError`] if the scene has spheres, moving objects or objects fixed to the head, or if it cannot be
     /// cut.
     pub fn new(scene: &Scene, side_m: f64) -> Result<Self, ExperimentError> {
-        refuse_what_is_not_still(scene)?;
+        check_is_static(scene)?;
         let mut world = Self {
             vertices: Vec::new(),
             colours: Vec::new(),
@@ -167,7 +167,7 @@ fn distinct(number: u64) -> u32 {
     packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
 }
 
-fn refuse_what_is_not_still(scene: &Scene) -> Result<(), ExperimentError> {
+fn check_is_static(scene: &Scene) -> Result<(), ExperimentError> {
     let refused = |expected: &'static str, found: String| {
         Err(ExperimentError::Scene { scene: scene.name().to_owned(), expected, found })
     };

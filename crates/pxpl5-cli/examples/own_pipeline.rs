@@ -6,12 +6,12 @@
 
 // ANCHOR: imports
 use pxpl5_cli::pxpl5::firmware::{
-    Body, CopyContent, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
+    Body, CopyContent, CopyOrder, CopyPath, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
     PictureNumber, Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport,
     region_messages, swap_request,
 };
 use pxpl5_cli::pxpl5::{
-    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,
+    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureTimes, Pipeline,
     PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
@@ -68,7 +68,7 @@ async fn firmware(
             let copy = CopyOrder {
                 target,
                 context: 0,
-                way: CopyWay::ThroughBacking,
+                way: CopyPath::ThroughBacking,
                 acknowledge: Some(gp.node()),
                 content: CopyContent::Colour,
             };
@@ -132,7 +132,7 @@ impl Pipeline for OneAtATime {
             transform_at: mark.time,
             copied_at: None,
             shown_at: record.tick(tick),
-            end: PictureEnd::Shown,
+            end: PictureResult::Shown,
         });
         times.filter(|times| times.shown_at < end).collect()
     }

@@ -19,7 +19,7 @@ pub(crate) struct BudgetArgs {
     max_seconds: u64,
 }
 
-/// The budget of commands without these options.
+/// The default limits, also used by commands without options for memory and time.
 impl Default for BudgetArgs {
     fn default() -> Self {
         Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }
@@ -33,14 +33,14 @@ const MOST_SECONDS: u64 = 86_400;
 
 /// Numbers of simulated fields after which an early run is checked. Later the run is checked whenever it reports
 /// progress.
-pub(crate) const YOUNG: [u64; 6] = [1, 2, 4, 8, 16, 32];
+pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. In the first seconds, pipelines fill and
 /// caches are cold.
-const TELLING_SECONDS: f64 = 0.5;
+const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 
 /// Bytes that a run must have allocated before its total memory is extrapolated.
-const TELLING_BYTES: f64 = 50e6;
+const MIN_EXTRAPOLATED_BYTES: f64 = 50e6;
 
 /// A monitor of the time and memory of one run.
 #[derive(Clone, Debug)]
@@ -145,8 +145,8 @@ impl BudgetArgs {
     /// its fields. The rest of the fields is assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // Short runs and small ones say too little about the rest.
-        let megabytes = if taken.bytes > TELLING_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
-        let seconds = if taken.seconds > TELLING_SECONDS { taken.seconds / part } else { 0.0 };
+        let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
+        let seconds = if taken.seconds > MIN_EXTRAPOLATED_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
@@ -206,7 +206,7 @@ mod tests {
         assert!(refusal(91.0, 1.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
         assert!(refusal(101.0, 0.0).is_some(), "too much already");
         let watch = BUDGET.watch(1_000_000);
-        std::thread::sleep(std::time::Duration::from_secs_f64(1.5 * TELLING_SECONDS));
+        std::thread::sleep(std::time::Duration::from_secs_f64(1.5 * MIN_EXTRAPOLATED_SECONDS));
         assert_eq!(watch.check(1), Ok(()), "what the first field needed took no 750,000 s");
     }
 

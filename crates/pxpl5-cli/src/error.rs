@@ -35,7 +35,6 @@ impl CliError {
         &self.message
     }
 
-    /// Returns the exit code of this error.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }

@@ -10,7 +10,7 @@ use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
-use pxpl5::{Eye, Film, FilmOf, PeriodNumber, Pixels};
+use pxpl5::{Eye, Film, FilmSurfaces, PeriodNumber, Pixels};
 use std::path::PathBuf;
 
 /// Write a viewer's picture as an animated PNG at the true field rate.
@@ -56,9 +56,9 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
     let eyes = match args.eye {
-        Whose::Left => FilmOf::One(Eye::Left.into()),
-        Whose::Right => FilmOf::One(Eye::Right.into()),
-        Whose::Both => FilmOf::All,
+        Whose::Left => FilmSurfaces::One(Eye::Left.into()),
+        Whose::Right => FilmSurfaces::One(Eye::Right.into()),
+        Whose::Both => FilmSurfaces::All,
     };
     let file = OutputFile::open(&args.out, "--out")?;
     // The run ends one field after the film, because the last picture is final only then.

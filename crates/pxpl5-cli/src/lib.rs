@@ -135,7 +135,7 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
     match run(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            terminal::complain(&format!("pxpl5: {}\n", error.message()));
+            terminal::print_error(&format!("pxpl5: {}\n", error.message()));
             error.exit_code()
         }
     }

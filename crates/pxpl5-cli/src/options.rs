@@ -5,17 +5,17 @@ use pxpl5::{KeyValues, Registry};
 use std::sync::{Arc, OnceLock};
 
 /// The pipelines and displays of this process. [`crate::main`] sets them before clap builds the options.
-static KNOWN: OnceLock<Arc<Registry>> = OnceLock::new();
+static REGISTRY: OnceLock<Arc<Registry>> = OnceLock::new();
 
 /// Sets the pipelines and displays of this process.
 pub(crate) fn know(registry: Arc<Registry>) {
     // Only a second call of `main` would set the registry again. The options of the first call are kept.
-    let _ = KNOWN.set(registry);
+    let _ = REGISTRY.set(registry);
 }
 
 /// Returns the pipelines and displays of this process, by default the built-in ones.
 pub(crate) fn registry() -> Arc<Registry> {
-    Arc::clone(KNOWN.get_or_init(pxpl5::registry))
+    Arc::clone(REGISTRY.get_or_init(pxpl5::registry))
 }
 
 /// The pipeline and its keys, as given on the command line.

@@ -7,7 +7,7 @@ use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::figures::Bench;
-use pxpl5::readings::{Fit, LeftOut, Readings, run as rank};
+use pxpl5::readings::{Fit, LeaveOneOut, Readings, run as rank};
 use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
@@ -101,6 +101,6 @@ fn line(fit: &Fit) -> String {
     )
 }
 
-fn left_out(one: &LeftOut) -> String {
+fn left_out(one: &LeaveOneOut) -> String {
     format!("{:<4} {:>+7.1} %  {}\n", one.id, one.error_percent, one.words)
 }

@@ -47,7 +47,7 @@ pub(crate) struct RigArgs {
 const FIELDS_OF_PASS: u64 = 60;
 
 /// Settings that the rig determines itself and does not accept.
-const NOT_OURS: [&str; 8] =
+const KEYS_SET_BY_RIG: [&str; 8] =
     ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
 /// Runs the command `pxpl5 rig`.
@@ -72,7 +72,7 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
 
 /// Returns the plan with the user's pipeline, machine, tracker and seed, and the rig's own scene and motion.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
-    if let Some(key) = file.keys().find(|key| NOT_OURS.contains(key) || key.starts_with("motion.")) {
+    if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || key.starts_with("motion.")) {
         return Err(CliError::usage(format!(
             "{key}: does not apply to the rig, which has its own scene, motion and length"
         )));

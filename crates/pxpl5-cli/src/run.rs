@@ -11,7 +11,9 @@ use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
-use pxpl5::{ExperimentFile, HeadReport, Keep, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
+use pxpl5::{
+    ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId,
+};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -39,7 +41,7 @@ pub(crate) struct RunArgs {
     /// Disable an optimization of the simulator to measure its effect: idle-boards, transfers, empty-regions or
     /// repeated-code; may be repeated.
     #[arg(long, value_name = "SAVING")]
-    without: Vec<Saving>,
+    without: Vec<Optimization>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this
     /// folder.
     #[arg(long, value_name = "DIR")]

@@ -79,7 +79,7 @@ pub(crate) struct SettingArgs {
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the head motion's sway and of the tracker's noise; default 1.
+    /// Seed of the head motion's sway, or with --head of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5

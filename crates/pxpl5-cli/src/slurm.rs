@@ -23,7 +23,6 @@ use std::path::{Path, PathBuf};
 /// Inputs and outputs of a sweep, and its division into tasks.
 #[derive(Clone, Debug)]
 pub(crate) struct Jobs<'a> {
-    /// Path of the experiment file.
     pub(crate) file: &'a Path,
     /// Settings shared by all points.
     pub(crate) sets: &'a [String],

@@ -1,6 +1,6 @@
 //! Execution of an experiment with its budget, and saving and restoring of snapshots.
 
-use crate::budget::{BudgetArgs, YOUNG};
+use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::numbers::whole;
@@ -12,7 +12,7 @@ use crate::too_heavy::too_heavy;
 use clap::Args;
 use parameters::text_of;
 use pxpl5::{
-    ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot,
+    ExperimentError, ExperimentFile, Host, Keep, Machine, Optimization, Outcome, PeriodNumber, Pixels, Plan, Snapshot,
     Workstation,
 };
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
     pub(crate) threads: Option<u64>,
     /// Optimizations that are disabled.
-    pub(crate) without: &'a [Saving],
+    pub(crate) without: &'a [Optimization],
     /// Observations that are kept in the outcome.
     pub(crate) keep: Keep,
     pub(crate) budget: BudgetArgs,
@@ -79,7 +79,7 @@ impl Simulated {
 }
 
 /// Prefixes of keys that a command may set when it restores a snapshot. The snapshot determines all others.
-const BESIDE: [&str; 4] = ["fields", "pixels", "measure", "output."];
+const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
     /// Returns the experiment of the snapshot with the given settings applied, or `given` if no snapshot is restored.
@@ -90,7 +90,8 @@ impl SnapshotArgs {
     pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
         let Some(path) = &self.restore else { return Ok(given) };
         // Most settings are part of the snapshot, and changing them would change the run.
-        if let Some(key) = given.keys().find(|key| !BESIDE.iter().any(|allowed| key.starts_with(allowed))) {
+        if let Some(key) = given.keys().find(|key| !KEYS_BESIDE_SNAPSHOT.iter().any(|allowed| key.starts_with(allowed)))
+        {
             let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
             return Err(CliError::usage(message));
         }
@@ -131,7 +132,7 @@ impl SnapshotArgs {
         }
         // The run stops at these fields: to save, to compare, and to extrapolate its cost early.
         let save_at = self.save_at.map(PeriodNumber);
-        let young = YOUNG.map(|field| PeriodNumber::FIRST.after(field));
+        let young = EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field));
         let stops = save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).chain(young);
         let stops: Vec<PeriodNumber> = stops.collect();
         let bar = progress(plan.fields, "fields", how.quiet);

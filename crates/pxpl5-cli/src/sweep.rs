@@ -6,7 +6,7 @@ use crate::estimate::Estimate;
 use crate::numbers::{are, count_of, whole};
 use crate::options::registry;
 use crate::slurm::{self, Jobs, quoted};
-use crate::terminal::{complain, print, progress, warn};
+use crate::terminal::{print, print_error, progress, warn};
 use clap::Args;
 use pxpl5::ExperimentFile;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
@@ -83,7 +83,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     args.admit(&sweep, threads)?;
     // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
     let mut store = Store::open(&args.out, header, args.resume)?;
-    told_when_interrupted(&args)?;
+    install_interrupt_handler(&args)?;
     let total = args.shard.share_of(sweep.space().points());
     let bar = progress(total, "points", args.quiet);
     bar.set_position(store.finished(args.shard));
@@ -92,8 +92,8 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
     // A sweep succeeds if at least one point could be simulated.
-    let failed = tell_failures(&store, args.shard, total, "simulated")?;
-    tell_place(&args.out, total, args.quiet)?;
+    let failed = report_failures(&store, args.shard, total, "simulated")?;
+    report_rows_path(&args.out, total, args.quiet)?;
     store.finish()?;
     if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
 }
@@ -134,14 +134,14 @@ const INTERRUPTED: i32 = 130;
 
 /// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume. Finished rows are in the file
 /// already.
-fn told_when_interrupted(args: &SweepArgs) -> Result<(), CliError> {
+fn install_interrupt_handler(args: &SweepArgs) -> Result<(), CliError> {
     let again = again(args);
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
     listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be listened for: {error}")))
 }
 
 fn end_interrupted(again: &str) {
-    complain(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
+    print_error(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
     std::process::exit(INTERRUPTED);
 }
 
@@ -160,17 +160,17 @@ fn again(args: &SweepArgs) -> String {
 }
 
 /// Prints the number of failed points of a shard and the error of the first. Returns that number.
-pub(crate) fn tell_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
+pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
         let all = count_of(total, "point");
-        complain(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));
+        print_error(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));
     }
     Ok(failed)
 }
 
 /// Prints the path of the file of rows.
-pub(crate) fn tell_place(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
+pub(crate) fn report_rows_path(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
     if quiet { Ok(()) } else { print(&format!("{} in {}.\n", are(total, "point"), out.join(ROWS_FILE).display())) }
 }

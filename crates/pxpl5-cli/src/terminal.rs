@@ -29,14 +29,14 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), CliError> {
 }
 
 /// Prints a message to standard error. Errors are ignored, because no other channel is left to report them.
-pub(crate) fn complain(text: &str) {
+pub(crate) fn print_error(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Prints warnings to standard error unless `quiet` is true.
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
     if !quiet {
-        warnings.iter().for_each(|warning| complain(&format!("pxpl5: warning: {warning}\n")));
+        warnings.iter().for_each(|warning| print_error(&format!("pxpl5: warning: {warning}\n")));
     }
 }
 

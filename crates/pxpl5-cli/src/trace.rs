@@ -1,6 +1,6 @@
 //! The command `pxpl5 trace`, which writes a trace of one run for Perfetto or Chrome.
 
-use crate::budget::{BudgetArgs, YOUNG};
+use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
 use crate::estimate::Work;
 use crate::numbers::count_of;
@@ -79,7 +79,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     // A trace needs every message, which a run does not record by default.
     let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
-    let run = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
+    let run = experiment.run_stopping(&EARLY_CHECK_FIELDS.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
         let done = field.since(PeriodNumber::FIRST);
         bar.set_position(done);
         watch.check(done).map_err(ExperimentError::Stopped)

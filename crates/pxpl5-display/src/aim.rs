@@ -6,7 +6,7 @@ use std::fmt;
 
 /// The times at which the picture of one view is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LightSpan {
+pub struct LightTimes {
     /// Tick of the display (retrace) from which the picture is shown.
     pub tick: Time,
     /// Time at which the first pixel lights.
@@ -15,7 +15,7 @@ pub struct LightSpan {
     pub last: Time,
 }
 
-/// The instant of a [`LightSpan`] for which a view is predicted. All pipelines use the same one.
+/// The instant of a [`LightTimes`] for which a view is predicted. All pipelines use the same one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
@@ -41,7 +41,7 @@ impl Aim {
 
     /// Returns the instant for which a view is drawn, from the times at which it is shown.
     #[must_use]
-    pub fn instant(self, shown: &LightSpan) -> Time {
+    pub fn instant(self, shown: &LightTimes) -> Time {
         match self {
             Self::Middle => Time(shown.first.0.midpoint(shown.last.0)),
             Self::FirstPixel => shown.first,
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn every_aim_is_the_instant_that_its_name_says() {
-        let shown = LightSpan { tick: Time(10), first: Time(20), last: Time(41) };
+        let shown = LightTimes { tick: Time(10), first: Time(20), last: Time(41) };
         let instants = Aim::ALL.map(|(name, aim)| (name, aim.instant(&shown).0));
         assert_eq!(instants, [("middle", 30), ("first-pixel", 20), ("last-pixel", 41), ("retrace", 10)]);
     }

@@ -46,17 +46,17 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// Returns a boxed copy of the numbers.
     fn boxed(&self) -> Box<dyn DisplayConfig>;
 
-    /// Sets the number of past periods that the display remembers. Without this call it is 2; displays without memory
-    /// ignore it.
+    /// Sets the number of past periods that the display remembers. The default is 2. Displays without memory ignore the
+    /// number.
     fn remember(&mut self, _periods: u64) {}
 
     /// Sets the background colour 0x00RRGGBB of places where nothing is drawn. Displays whose pictures contain their
     /// own background ignore it.
-    fn show_behind_all(&mut self, _background: u32) {}
+    fn set_background(&mut self, _background: u32) {}
 
     /// Returns true if the display shows faces of a cube around the head, with depth, instead of pictures of an eye's
     /// view.
-    fn takes_faces(&self) -> bool {
+    fn shows_cube_faces(&self) -> bool {
         false
     }
 

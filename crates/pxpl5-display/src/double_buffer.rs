@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// A region, complete or not, with the messages that have arrived.
 #[derive(Clone, Debug)]
-struct Arriving {
+struct PartialRegion {
     pixels: RegionPixels,
     /// Left, top, width and height on the surface.
     rectangle: [u32; 4],
@@ -16,13 +16,13 @@ struct Arriving {
     first_part_at: Time,
 }
 
-impl Arriving {
+impl PartialRegion {
     const fn is_complete(&self) -> bool {
         self.arrived.count_ones() == self.pixels.parts
     }
 }
 
-type Regions = BTreeMap<RegionId, Arriving>;
+type Regions = BTreeMap<RegionId, PartialRegion>;
 
 /// Two buffers for one surface, of which one is shown.
 ///
@@ -98,13 +98,14 @@ impl DoubleBuffer {
             format!("region {region} of {grid:?} does not lie in {} x {} or exceeds 128 x 128", self.width, self.height)
         };
         let rectangle = place.ok_or_else(outside)?;
+        // The number of messages follows from the size of the region.
         let expected = (rectangle[2] * rectangle[3]).div_ceil(MAX_MESSAGE_WORDS);
         if parts != expected || part >= parts {
             return Err(format!("expected one of {expected} messages of a region, found message {part} of {parts}"));
         }
         let buffer = self.buffers.get_mut(usize::from(target.buffer)).ok_or_else(|| no_such_buffer(target.buffer))?;
         // The first message of a new copy replaces the old region.
-        let fresh = Arriving { pixels, rectangle, arrived: 0, first_part_at: now };
+        let fresh = PartialRegion { pixels, rectangle, arrived: 0, first_part_at: now };
         let region = buffer.entry(target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != target || region.is_complete() {
             *region = fresh;
@@ -130,6 +131,7 @@ impl DoubleBuffer {
 
     /// Shows the buffer requested before (not at) this tick and returns it, or returns `None` without a request.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
+        // Keep the old picture, which was visible until this tick.
         self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
         let (_, buffer) = self.requested.take_if(|(asked_at, _)| *asked_at < now)?;
         self.shown = buffer;

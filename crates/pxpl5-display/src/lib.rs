@@ -24,7 +24,7 @@ mod config;
 mod double_buffer;
 mod surface;
 
-pub use aim::{Aim, LightSpan};
+pub use aim::{Aim, LightTimes};
 pub use config::{DisplayConfig, DisplayError};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
 pub use surface::{Counter, Surface};
@@ -132,9 +132,10 @@ pub trait Display: Any + Debug + Send + Sync {
     /// far, and pixels still visible from earlier ones. Unlit pixels are black. The display stays unchanged.
     ///
     /// The default assumes that the shown buffer was complete when its period began, which is true for double buffers.
-    fn seen_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
+    fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;
+        // Begin with the last complete picture and add the pixels lit since.
         let before = self.last_seen().and_then(|last| self.seen(surface, last));
         let mut screen = before.unwrap_or_else(|| RgbImage::new(size.width, size.height));
         let shown = self.shown(surface)?;

@@ -2,7 +2,7 @@
 
 use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
-use crate::seen::{BufferContents, SeenField};
+use crate::seen::{BufferContents, ScannedField};
 use crate::{
     Faults, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferFault, FrameBufferOutput,
     FrameBufferStats, Video,
@@ -26,7 +26,7 @@ pub struct FrameBuffer {
     scanning: Option<PeriodNumber>,
     /// Swap requests that have not taken effect: time of arrival and buffer.
     swaps: Vec<(Time, u8)>,
-    seen: VecDeque<SeenField>,
+    seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
     faults: Faults,
 }
@@ -92,23 +92,23 @@ impl FrameBuffer {
 
     /// Returns a field as it was scanned; `None` before its end, and after the board has forgotten it.
     #[must_use]
-    pub fn seen(&self, field: PeriodNumber) -> Option<SeenField> {
+    pub fn seen(&self, field: PeriodNumber) -> Option<ScannedField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
     /// Returns the field that was scanned last; `None` before the end of the first field.
     #[must_use]
-    pub fn last_seen(&self) -> Option<SeenField> {
+    pub fn last_seen(&self) -> Option<ScannedField> {
         self.seen.back().cloned()
     }
 
     /// Returns the current field as scanned up to `now`. Pixels that arrive later are not in it. `None` before the
     /// first retrace.
     #[must_use]
-    pub fn scanned_so_far(&self, now: Time) -> Option<SeenField> {
+    pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
         let regions: Regions = self.buffers[usize::from(buffer)].regions();
-        Some(SeenField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
+        Some(ScannedField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
     }
 
     /// Returns the contents of the displayed buffer, with all pixels that have arrived.
@@ -138,11 +138,13 @@ impl FrameBuffer {
 
     fn receive(&mut self, pixels: &RegionPixels, context: &mut Out) -> Result<(), FrameBufferFault> {
         let target = pixels.target;
+        // Refuse pixels for another board or for a buffer that does not exist.
         if target.frame_buffer != self.node {
             return Err(FrameBufferFault::WrongBoard { expected: self.node, found: target.frame_buffer });
         }
         let found = target.buffer;
         let buffer = self.buffers.get_mut(usize::from(found)).ok_or(FrameBufferFault::NoSuchBuffer { found })?;
+        // Record the arrival in the region, which is new for a first message.
         let place = arriving(buffer, pixels, &self.video)?;
         buffer.region_mut(place).arrive(pixels.part, context.now());
         self.stats.messages += 1;
@@ -192,11 +194,12 @@ impl FrameBuffer {
     }
 
     fn remember(&mut self, field: PeriodNumber, ends_at: Time) {
+        // Forget the oldest field if the memory is full.
         if self.seen.len() == self.fields_kept {
             self.seen.pop_front();
         }
         let regions: Regions = self.buffers[usize::from(self.displayed)].share();
-        self.seen.push_back(SeenField {
+        self.seen.push_back(ScannedField {
             field,
             buffer: self.displayed,
             ends_at,
@@ -208,6 +211,7 @@ impl FrameBuffer {
 
     fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
+        // Requests that arrived before this instant take effect, and the last one wins.
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };
         self.swaps.retain(|swap| swap.0 >= now);

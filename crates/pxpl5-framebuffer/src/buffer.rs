@@ -1,4 +1,4 @@
-//! One of the two buffers of a board. It keeps a region as long as one of its pixels can still be seen.
+//! One of the two buffers of a board. A buffer keeps a region as long as one of its pixels can still be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -16,7 +16,7 @@ const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
-    held: Vec<Held>,
+    held: Vec<StoredRegion>,
     /// Shared copy of `held`; `None` after a change.
     shared: Option<Regions>,
     search_above: usize,
@@ -29,7 +29,7 @@ pub(crate) struct Buffer {
 }
 
 #[derive(Clone, Debug)]
-struct Held {
+struct StoredRegion {
     region: Arc<RegionWrite>,
     hidden: bool,
 }
@@ -52,7 +52,7 @@ impl Buffer {
     }
 
     pub(crate) fn add(&mut self, region: RegionWrite) -> usize {
-        self.held.push(Held { region: Arc::new(region), hidden: false });
+        self.held.push(StoredRegion { region: Arc::new(region), hidden: false });
         self.arriving.push(self.held.len() - 1);
         self.held.len() - 1
     }
@@ -80,6 +80,7 @@ impl Buffer {
         if *newest == place {
             return None;
         }
+        // The region with the higher index is the newer one, also if an older one completes later.
         let older = place.min(*newest);
         self.held[older].hidden = true;
         *newest = place.max(*newest);
@@ -123,6 +124,7 @@ impl Buffer {
             self.shared = None;
             self.index();
         }
+        // The search by pixels is slow, so it runs only after many regions have come.
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());
@@ -152,7 +154,7 @@ impl Buffer {
     }
 }
 
-fn regions_of(held: &[Held]) -> Regions {
+fn regions_of(held: &[StoredRegion]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
-//!                           +--> buffer 1 (even and odd field) --+--> scan --> SeenField
+//!                           +--> buffer 1 (even and odd field) --+--> scan --> ScannedField
 //!   software --SwapRequested--> at the next retrace ------------^      ^
 //!   sync generator --Retrace-------------------------------------------+
 //! ```
@@ -20,14 +20,14 @@
 //! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the
 //!    contents of the buffer when the beam is there: the new value of a word that arrives at that instant, the old
 //!    value of a word that arrives later. A region that arrives too late is therefore seen torn, word by word.
-//!    [`SeenField::late_regions`] lists such regions.
+//!    [`ScannedField::late_regions`] lists such regions.
 //! 5. [`FrameBufferStats::lines_never_shown`] counts lines that another region of the same place overwrites before the
 //!    beam has shown all of them. Only regions of the same cut are compared.
 //! 6. Two boards scan in lock-step because the wiring gives both the same retraces.
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
 //!
-//! Pixels are computed only when a picture is read. A [`SeenField`] holds all data for its pixels, so they can be
+//! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for its pixels, so they can be
 //! computed later or in another thread. At each retrace the board forgets regions that can no longer be seen.
 //!
 //! # Timing
@@ -77,7 +77,7 @@ pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
-pub use seen::{BufferContents, SeenField, SeenLateRegion};
+pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 pub use video::Video;

@@ -1,7 +1,7 @@
 //! The NTSC display: one frame buffer for each eye, in lock-step.
 
 use crate::{
-    FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, SeenField, Video,
+    FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, ScannedField, Video,
 };
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -115,6 +115,7 @@ impl Display for NtscDisplay {
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let now = board.seen(period)?;
+        // The picture has the lines of this field and of the field before.
         let before = period.before(1).and_then(|field| board.seen(field));
         Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
     }
@@ -123,17 +124,18 @@ impl Display for NtscDisplay {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);
         board.seen(now)?;
+        // A screen shows parts of up to three fields.
         let oldest = now.before(2).unwrap_or(PeriodNumber::FIRST);
-        let fields: Vec<SeenField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
+        let fields: Vec<ScannedField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
         Some(seen_at(&self.video, time, &fields))
     }
 
-    fn seen_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
+    fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let period = self.video.field_at(now);
         let oldest = period.before(2).unwrap_or(PeriodNumber::FIRST);
         let before = oldest.until(period).filter_map(|field| board.seen(field));
-        let fields: Vec<SeenField> = before.chain(board.scanned_so_far(now)).collect();
+        let fields: Vec<ScannedField> = before.chain(board.current_scan(now)).collect();
         Some(seen_at(&self.video, now, &fields))
     }
 
@@ -167,7 +169,7 @@ impl Display for NtscDisplay {
 /// the field before it. Fields that are not in `fields` are black. A screen keeps each line until the beam comes again,
 /// because the model's phosphor does not fade.
 #[must_use]
-pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
+pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
     let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));
     let mut screen = RgbImage::new(video.width(), video.height());
@@ -206,8 +208,8 @@ fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
 }
 
 /// Returns the scanned lines of the wanted field.
-fn picture_of(fields: &[SeenField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
-    fields.iter().find(|field| Some(field.field()) == wanted).map(SeenField::picture)
+fn picture_of(fields: &[ScannedField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
+    fields.iter().find(|field| Some(field.field()) == wanted).map(ScannedField::picture)
 }
 
 /// Name of the display on the command line.

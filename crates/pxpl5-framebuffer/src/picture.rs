@@ -24,7 +24,7 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// Returns `length` pixels of which the first is at [x, y]. They must lie in the canvas.
+    /// Returns `length` pixels of which the first is at [x, y]. The pixels must lie in the canvas.
     pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
         CanvasRow(&mut self.words[begin..begin + length as usize])

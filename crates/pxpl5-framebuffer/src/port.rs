@@ -44,7 +44,7 @@ pub enum FrameBufferOutput {
     },
 }
 
-/// An event that a frame buffer cannot handle. It is counted and recorded, and has no other effect.
+/// An event that a frame buffer cannot handle. A fault is counted and recorded, and has no other effect.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FrameBufferFault {

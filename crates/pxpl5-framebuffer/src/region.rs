@@ -56,6 +56,7 @@ impl RegionWrite {
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
         let Some(rectangle) = rectangle(video, &target) else { return Err(outside) };
         let [_, _, width, height] = rectangle;
+        // The number of messages follows from the size of the region.
         let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);
         if pixels.parts != expected {
             let found = pixels.parts;
@@ -107,6 +108,7 @@ impl RegionWrite {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;
         let end = begin + width;
+        // A row may belong to two messages.
         let parts = begin / MAX_MESSAGE_WORDS..=(end - 1) / MAX_MESSAGE_WORDS;
         parts.map(move |part| {
             let first = begin.max(part * MAX_MESSAGE_WORDS);
@@ -121,6 +123,7 @@ impl RegionWrite {
 
     fn segment(&self, row: u32, part: u32, words: Range<u32>, word: Span) -> Segment {
         let [left, top, width, height] = self.rectangle;
+        // The words before the last one have arrived one word time apart.
         let message_at = self.arrived[part as usize];
         let message_end = (width * height).min((part + 1) * MAX_MESSAGE_WORDS);
         let before_end = word * u64::from(message_end - 1 - words.start);

@@ -39,6 +39,7 @@ impl Scans {
     /// Returns true if a field has shown the outermost lines of the older region after its write and before the newer
     /// write. Then it has also shown the lines between them, which need no check.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
+        // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
         // The last word of a message comes at most this long after its first.
         let overwritten =

@@ -9,10 +9,10 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. Its pixels are computed when they are read. It is cheap to clone and independent of
-/// later events.
+/// One field as it was scanned. Its pixels are computed when they are read. A field is cheap to clone and independent
+/// of later events.
 #[derive(Clone, Debug)]
-pub struct SeenField {
+pub struct ScannedField {
     pub(crate) field: PeriodNumber,
     pub(crate) buffer: u8,
     pub(crate) ends_at: Time,
@@ -24,7 +24,7 @@ pub struct SeenField {
 /// A region of which some pixels were scanned before they had arrived, so that older pixels are seen in their place.
 /// The board does not know for which field the region was meant. Compare `target.picture` to find out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SeenLateRegion {
+pub struct ScannedLateRegion {
     /// Target of the region, with its picture.
     pub target: CopyTarget,
     /// Arrival time of the last message; `None` if it did not arrive before the end of the field.
@@ -38,7 +38,7 @@ pub struct SeenLateRegion {
     pub lateness: Span,
 }
 
-impl SeenField {
+impl ScannedField {
     /// Returns the number of the field.
     #[must_use]
     pub const fn field(&self) -> PeriodNumber {
@@ -80,7 +80,7 @@ impl SeenField {
 
     /// Returns the regions that came too late for this field, in order of their arrival.
     #[must_use]
-    pub fn late_regions(&self) -> Vec<SeenLateRegion> {
+    pub fn late_regions(&self) -> Vec<ScannedLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
         during.filter_map(|region| self.late(region)).collect()
     }
@@ -95,10 +95,12 @@ impl SeenField {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
             for segment in region.segments(self.word) {
+                // A field scans every second line only.
                 let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
                     continue;
                 };
                 let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
+                // If the last word was in time, all words of the segment were.
                 if segment.message_at <= scanned_at {
                     row.put(&pixels, &segment);
                 } else {
@@ -123,8 +125,8 @@ impl SeenField {
         Some(arrived.since(scanned_at))
     }
 
-    fn late(&self, region: &RegionWrite) -> Option<SeenLateRegion> {
-        let mut late = SeenLateRegion {
+    fn late(&self, region: &RegionWrite) -> Option<ScannedLateRegion> {
+        let mut late = ScannedLateRegion {
             target: region.target,
             arrived_at: region.last_at().filter(|last| *last < self.ends_at),
             first_line: 0,
@@ -143,7 +145,7 @@ impl SeenField {
     }
 }
 
-impl SeenLateRegion {
+impl ScannedLateRegion {
     fn add(&mut self, y: u32, lateness: Span) {
         if self.lines == 0 {
             self.first_line = y;

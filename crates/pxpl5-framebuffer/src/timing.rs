@@ -47,6 +47,7 @@ impl VideoTiming {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
+        // Blanking and visible parts must fit into a line and into a field.
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines))?;

@@ -6,8 +6,8 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 
 /// Times of retraces, lines and pixels, all computed from time zero.
 ///
-/// Field `n` begins at retrace `n`. It scans the even lines of the frame if `n` is even, else the odd lines. Lines
-/// follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
+/// Field `n` begins at retrace `n`. The field scans the even lines of the frame if `n` is even, else the odd lines.
+/// Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
     timing: VideoTiming,
@@ -60,6 +60,7 @@ impl Video {
             return None;
         }
         let line = self.line_number(y, field)?;
+        // Count pixel periods from time zero, so that no error accumulates.
         let blanked = line.saturating_mul(self.timing.line_pixels).saturating_add(self.timing.left_blanking);
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
@@ -97,6 +98,7 @@ impl Video {
         if y >= self.height() || y % 2 != parity.first_line() {
             return None;
         }
+        // An odd field begins in the middle of a line; its first whole line counts.
         let start = field.0.saturating_mul(self.timing.frame_lines).div_ceil(2);
         Some(start + self.timing.top_blanking + u64::from(y / 2))
     }

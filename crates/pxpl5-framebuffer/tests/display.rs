@@ -237,11 +237,11 @@ fn a_viewer_sees_the_present_field_as_far_as_it_has_come() {
     for (x, y) in [(0, 1), (320, 241), (639, 479)] {
         let now = video().when(x, y, PeriodNumber(3)).expect("an odd field has the odd lines");
         rig.run_to(now);
-        assert_same(rig.display.seen_so_far(0, now), &screen(3, now), &format!("{x}, {y}"));
+        assert_same(rig.display.picture_so_far(0, now), &screen(3, now), &format!("{x}, {y}"));
     }
-    assert!(rig.display.seen_so_far(2, Time::ZERO).is_none());
+    assert!(rig.display.picture_so_far(2, Time::ZERO).is_none());
     let first = Rig::new().display;
-    assert_same(first.seen_so_far(0, Time::ZERO), &RgbImage::new(SIZE[0], SIZE[1]), "before the first retrace");
+    assert_same(first.picture_so_far(0, Time::ZERO), &RgbImage::new(SIZE[0], SIZE[1]), "before the first retrace");
 }
 
 #[test]

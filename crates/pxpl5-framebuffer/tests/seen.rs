@@ -3,7 +3,7 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_framebuffer::{FrameBufferConfig, FrameBufferEvent, SeenField, SeenLateRegion};
+use pxpl5_framebuffer::{FrameBufferConfig, FrameBufferEvent, ScannedField, ScannedLateRegion};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use std::sync::Arc;
@@ -87,7 +87,7 @@ fn copies() -> impl Strategy<Value = Vec<Copied>> {
     })
 }
 
-fn seen(copies: &[Copied], shuffle: u64) -> SeenField {
+fn seen(copies: &[Copied], shuffle: u64) -> ScannedField {
     let mut board = Board::slow(copies[0].slowness);
     board.bench.queue().shuffle_ties(shuffle);
     for copy in copies {
@@ -114,7 +114,7 @@ fn model_picture(copies: &[Copied]) -> Vec<u32> {
     words
 }
 
-fn model_late(copy: &Copied) -> Option<SeenLateRegion> {
+fn model_late(copy: &Copied) -> Option<ScannedLateRegion> {
     let mut lines = Vec::new();
     let mut lateness = 0;
     copy.each_pixel(|x, y, i| {
@@ -128,7 +128,7 @@ fn model_late(copy: &Copied) -> Option<SeenLateRegion> {
     lines.dedup();
     let last_at = copy.first_at + copy.gap * u64::from(n_parts(&copy.target) - 1);
     // A region counts as unknown if its first message has not ended at the end of the field.
-    (copy.first_at < ENDS && !lines.is_empty()).then(|| SeenLateRegion {
+    (copy.first_at < ENDS && !lines.is_empty()).then(|| ScannedLateRegion {
         target: copy.target,
         arrived_at: (last_at < ENDS).then_some(Time(last_at)),
         first_line: lines[0],
@@ -291,7 +291,7 @@ fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
         let lateness = Span(ENDS - scanned_at(0, 17).expect("an odd line"));
         assert_eq!(
             late,
-            [SeenLateRegion { target, arrived_at: None, first_line: 17, lines: 8, lateness }],
+            [ScannedLateRegion { target, arrived_at: None, first_line: 17, lines: 8, lateness }],
             "{shuffle}"
         );
     }

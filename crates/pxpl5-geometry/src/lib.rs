@@ -111,8 +111,8 @@ pub use outline::Outline;
 pub use plane::MAX_SLOPE;
 pub use regions::RegionMask;
 pub use screen::{
-    DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, PhongTriangle, ScreenTriangle,
-    SurfaceNormals,
+    DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, NORMAL_UNIT, PhongTriangle, ScreenTriangle, SurfaceNormals,
+    VertexColours,
 };
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};

@@ -78,7 +78,7 @@ pub struct ScreenTriangle<A> {
 
 /// Lit colours of the corners for Gouraud shading: red, green, blue in 1/256 of a colour unit, 0 to 255 * 256.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LitColours(pub [[u16; 3]; 3]);
+pub struct VertexColours(pub [[u16; 3]; 3]);
 
 /// Normals of the corners in eye coordinates, for Phong shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -205,7 +205,7 @@ impl<A> ScreenTriangle<A> {
     }
 }
 
-impl ScreenTriangle<LitColours> {
+impl ScreenTriangle<VertexColours> {
     /// Computes the expressions for `viewport`, which must be the picture of the transform.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {

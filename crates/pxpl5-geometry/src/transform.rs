@@ -6,7 +6,7 @@ use crate::lens::Lens;
 use crate::light::{ModelLight, NormalRows};
 use crate::newton;
 use crate::outline::{Outline, SUBPIXELS};
-use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
+use crate::screen::{self, ScreenTriangle, SurfaceNormals, VertexColours};
 use crate::touch::Touch;
 use crate::view::{Columns, FromWorld, ViewError};
 use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
@@ -259,7 +259,7 @@ impl Transform {
         triangle: &Triangle,
         light: &Light,
         stats: &mut SetupStats,
-        mut sink: impl FnMut(ScreenTriangle<LitColours>),
+        mut sink: impl FnMut(ScreenTriangle<VertexColours>),
     ) {
         let lighting = ModelLight::new(&self.normals, light);
         self.triangle(
@@ -337,7 +337,7 @@ impl Transform {
         triangle: &Triangle,
         light: &Light,
         stats: &mut SetupStats,
-        mut sink: impl FnMut(ScreenTriangle<LitColours>),
+        mut sink: impl FnMut(ScreenTriangle<VertexColours>),
     ) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -425,8 +425,8 @@ impl Transform {
 }
 
 #[inline(always)]
-fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
-    ScreenTriangle { outline, surface: LitColours(colours.map(|c| c.map(screen::colour_fixed))) }
+fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<VertexColours> {
+    ScreenTriangle { outline, surface: VertexColours(colours.map(|c| c.map(screen::colour_fixed))) }
 }
 
 #[inline(always)]

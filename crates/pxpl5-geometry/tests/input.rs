@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, SurfaceVertex, Touch, Transform,
-    Triangle, TriangleLanes, ViewError, ViewTransform, Viewport, WorldSphere,
+    Culling, GouraudSphere, LANES, Light, ScreenTriangle, SetupStats, SurfaceVertex, Touch, Transform, Triangle,
+    TriangleLanes, VertexColours, ViewError, ViewTransform, Viewport, WorldSphere,
 };
 use pxpl5_wire::{FieldParity, Linear};
 use support::random::Random;
@@ -20,7 +20,7 @@ fn triangle(positions: [Vec3; 3]) -> Triangle {
     Triangle { positions, normals: [Vec3::Z; 3], colours: [[10, 20, 30], [40, 50, 60], [70, 80, 90]] }
 }
 
-fn drawn(transform: &Transform, positions: [Vec3; 3]) -> (Vec<ScreenTriangle<LitColours>>, SetupStats) {
+fn drawn(transform: &Transform, positions: [Vec3; 3]) -> (Vec<ScreenTriangle<VertexColours>>, SetupStats) {
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform.gouraud(&triangle(positions), &Light::NONE, &mut stats, |t| out.push(t));

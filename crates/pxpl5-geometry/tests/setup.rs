@@ -4,8 +4,8 @@ mod support;
 
 use proptest::prelude::*;
 use pxpl5_geometry::{
-    DEPTH_FAR, DEPTH_NEAR, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats,
-    SurfaceNormals, Viewport,
+    DEPTH_FAR, DEPTH_NEAR, GouraudTriangle, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats,
+    SurfaceNormals, VertexColours, Viewport,
 };
 use pxpl5_wire::{FieldParity, Linear, format};
 use support::native::Piece;
@@ -21,7 +21,7 @@ fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Opti
         outline.x = [x[0], x[2], x[1]];
         outline.y = [y[0], y[2], y[1]];
     }
-    let surface = LitColours(colours);
+    let surface = VertexColours(colours);
     let screen = ScreenTriangle { outline, surface };
     (twice_area != 0).then(|| Piece::new(screen, &mut SetupStats::default()))
 }

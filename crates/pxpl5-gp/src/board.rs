@@ -2,7 +2,7 @@
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
-use crate::look::GpLook;
+use crate::look::GpSnapshot;
 use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::{BreakpointHit, CodeVersion, Processor};
@@ -94,7 +94,7 @@ impl GpBoard {
             inbox: VecDeque::new(),
             batches: VecDeque::new(),
             in_flight: Vec::new(),
-            not_begun: Vec::new(),
+            unaccepting_receivers: Vec::new(),
             marks: Vec::new(),
             field: PeriodNumber::FIRST,
             status: Vec::new(),
@@ -104,7 +104,7 @@ impl GpBoard {
             issued: 0,
             progress: 0,
             waits: [Wait::NONE; 2],
-            stopped_by: None,
+            software_fault: None,
         };
         let shared = Rc::new(RefCell::new(shared));
         Self { shared, tasks: Vec::new(), announced: Vec::new(), poll_pending: false, cycle, fault: None }
@@ -113,7 +113,7 @@ impl GpBoard {
     /// Takes the time of [`Work`](crate::Work) from i860 code on a core with this configuration, instead of the timing
     /// table.
     /// Boards with the same shelf share decoded programs and their clocks.
-    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::Shelf>>) {
+    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
         processor.share(shelf);
@@ -121,9 +121,9 @@ impl GpBoard {
     }
 
     /// Turns memoization of the processor off, so that every clock is counted. Must be called before programs run.
-    pub fn count_every_clock(&mut self) {
+    pub fn disable_memoization(&mut self) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
-            processor.count_every_clock();
+            processor.disable_memoization();
         }
     }
 
@@ -135,7 +135,7 @@ impl GpBoard {
 
     /// Loads a program. Each priority may have one program.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
-        self.shared.borrow_mut().waits[priority as usize] = Wait::TO_BEGIN;
+        self.shared.borrow_mut().waits[priority as usize] = Wait::NOT_STARTED;
         self.tasks.push(Task { firmware, priority, has_ended: false });
         self.tasks.sort_by_key(|task| task.priority);
     }
@@ -160,7 +160,7 @@ impl GpBoard {
             }
         };
         // Poll only if the event can end a wait, and only once for all events of an instant.
-        if !self.poll_pending && shared.is_woken_by(cause) {
+        if !self.poll_pending && shared.can_end_wait(cause) {
             self.poll_pending = true;
             context.schedule(context.now(), Phase::Work, GpEvent::Poll);
         }
@@ -173,14 +173,17 @@ impl GpBoard {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.settle(shared.now);
         }
+        // Work may have ended at this instant; then run the programs as far as they go.
         self.poll_until_quiet();
         let mut shared = self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {
+            // All messages of a chain go to the board's ring port at once.
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
+        // A program may have begun new work.
         let end = shared.cpu.next_end();
         drop(shared);
         self.announce(end, context);
@@ -209,11 +212,12 @@ impl GpBoard {
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
+        // Stop after a full round without progress.
         for place in (0..self.tasks.len()).cycle() {
             let before = self.shared.borrow().progress;
             self.poll(place, &mut task_context);
-            let has_come_on = self.shared.borrow().progress != before;
-            quiet = if has_come_on { 1 } else { quiet + 1 };
+            let has_progressed = self.shared.borrow().progress != before;
+            quiet = if has_progressed { 1 } else { quiet + 1 };
             if self.stop() || quiet >= self.tasks.len() {
                 break;
             }
@@ -228,13 +232,14 @@ impl GpBoard {
         }
         if let Poll::Ready(result) = task.firmware.as_mut().poll(context) {
             task.has_ended = true;
+            // The first fault of a board is the one that it reports.
             self.fault = self.fault.take().or(result.err());
         }
     }
 
     /// Ends all programs if a fault of the board's own software has stopped the board. Returns true if it did.
     fn stop(&mut self) -> bool {
-        let Some(fault) = self.shared.borrow_mut().stopped_by.take() else { return false };
+        let Some(fault) = self.shared.borrow_mut().software_fault.take() else { return false };
         self.fault.get_or_insert(fault);
         self.tasks.clear();
         true
@@ -275,8 +280,8 @@ impl GpBoard {
 
     /// Returns a snapshot of the board at an instant that is not before the last event. The board stays unchanged.
     #[must_use]
-    pub fn look(&self, now: Time) -> GpLook {
-        GpLook::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
+    pub fn look(&self, now: Time) -> GpSnapshot {
+        GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
     /// Calls `look` with the processor, if the time of work comes from code.

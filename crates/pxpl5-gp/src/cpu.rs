@@ -7,7 +7,7 @@ use pxpl5_sim::{Span, Time};
 pub enum Priority {
     /// The interrupt program. The foreground stands still while it spends time.
     Interrupt,
-    /// The foreground program. It runs while the interrupt program spends no time.
+    /// The foreground program, which runs while the interrupt program spends no time.
     Foreground,
 }
 
@@ -36,6 +36,7 @@ impl Cpu {
         let Some((priority, since)) = self.running else {
             return;
         };
+        // Charge the time since the last change to the running program.
         let elapsed = now - since;
         self.busy += elapsed;
         let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);

@@ -14,7 +14,7 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. It ends only with a fault.
+/// A program on a board, which ends only with a fault.
 /// A program must wait for one future at a time. If it polls several futures side by side, the board knows only the
 /// last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
@@ -86,7 +86,7 @@ pub(crate) struct Shared {
     /// Messages of the current batch that were not accepted yet: their places in the batch and their receivers.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
     /// Receivers that have not accepted any message of the current batch.
-    pub(crate) not_begun: Vec<NodeId>,
+    pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
     /// Marks for ends of stages that wait for the acceptance of a batch, in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
@@ -101,7 +101,7 @@ pub(crate) struct Shared {
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
     /// Fault of the board's own software, which stops all programs.
-    pub(crate) stopped_by: Option<Fault>,
+    pub(crate) software_fault: Option<Fault>,
 }
 
 /// A wait of a program: its name, and the cause that can end it.
@@ -138,12 +138,12 @@ impl Wait {
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
     /// The wait of a program that has not run yet.
-    pub(crate) const TO_BEGIN: Self = Self { what: "", ended_by: Cause::Arrival };
+    pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
     /// Returns true if a cause can end the wait of a program or of the DMA.
-    pub(crate) fn is_woken_by(&self, cause: Cause) -> bool {
+    pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
     }
@@ -157,6 +157,7 @@ impl Shared {
     /// does not matter.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
+        // Insert after all messages of earlier instants and lower senders.
         let before = self.inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, source));
         self.inbox.insert(before.map_or(0, |place| place + 1), Received { arrived, source, body });
         Cause::Arrival
@@ -171,8 +172,8 @@ impl Shared {
         // Messages of a batch are accepted one by one, in any order.
         let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return Cause::Acceptance };
         let (_, receiver) = self.in_flight.swap_remove(i);
-        self.not_begun.retain(|node| *node != receiver);
-        if self.not_begun.is_empty() {
+        self.unaccepting_receivers.retain(|node| *node != receiver);
+        if self.unaccepting_receivers.is_empty() {
             self.draining = batch;
         }
         // The whole batch is accepted: stages that waited for it end now.
@@ -189,9 +190,10 @@ impl Shared {
     /// Returns the next batch if the DMA is free, and records its receivers.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
+        // All messages of the batch now wait for their acceptance.
         self.in_flight.extend((0..).zip(batch.links.iter().map(|link| link.message.destination)));
-        self.not_begun.clear();
-        self.not_begun.extend(self.in_flight.iter().map(|flight| flight.1));
+        self.unaccepting_receivers.clear();
+        self.unaccepting_receivers.extend(self.in_flight.iter().map(|flight| flight.1));
         Some(batch)
     }
 
@@ -242,8 +244,8 @@ impl Gp {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. It is zero
-    /// before its first change.
+    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. The value
+    /// is zero before its first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)

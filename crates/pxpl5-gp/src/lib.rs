@@ -49,7 +49,7 @@ pub use bench::BoardBench;
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
-pub use look::{GpLook, ProgramLook, WaitingMail};
+pub use look::{GpSnapshot, ProgramSnapshot, WaitingMessageInfo};
 pub use memory::{Account, Memory, OutOfMemory};
 pub use messages::Chain;
 pub use probe::{Mark, Stage, StageEdge};

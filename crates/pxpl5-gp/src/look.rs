@@ -8,11 +8,11 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 
 /// A snapshot of a graphics processor board at an instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GpLook {
+pub struct GpSnapshot {
     /// Programs of the board, the interrupt program first.
-    pub programs: Vec<ProgramLook>,
+    pub programs: Vec<ProgramSnapshot>,
     /// Messages that have arrived and that no program has taken, in order.
-    pub inbox: Vec<WaitingMail>,
+    pub inbox: Vec<WaitingMessageInfo>,
     /// Receivers that have not accepted their message of the current chain, in the order of the chain.
     pub unaccepted: Vec<NodeId>,
     /// Number of messages of each waiting chain, the next one first.
@@ -27,7 +27,7 @@ pub struct GpLook {
 
 /// A snapshot of one program of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProgramLook {
+pub struct ProgramSnapshot {
     pub priority: Priority,
     /// Name of the program's wait; empty before its first run.
     pub waits_for: &'static str,
@@ -38,25 +38,30 @@ pub struct ProgramLook {
 
 /// A message in the inbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WaitingMail {
+pub struct WaitingMessageInfo {
     /// Arrival time of the last word.
     pub arrived: Time,
     /// Port of the sender.
     pub source: NodeId,
 }
 
-impl GpLook {
+impl GpSnapshot {
     pub(crate) fn of(shared: &Shared, programs: impl Iterator<Item = Priority>, now: Time) -> Self {
-        let program = |priority| ProgramLook {
+        let program = |priority| ProgramSnapshot {
             priority,
             waits_for: shared.waits[priority as usize].what,
             work_left: shared.cpu.left(priority, now).filter(|left| *left > Span::ZERO),
         };
+        // Acceptances come in any order, so restore the order of the chain.
         let mut unaccepted = shared.in_flight.clone();
         unaccepted.sort_unstable_by_key(|flight| flight.0);
         Self {
             programs: programs.map(program).collect(),
-            inbox: shared.inbox.iter().map(|mail| WaitingMail { arrived: mail.arrived, source: mail.source }).collect(),
+            inbox: shared
+                .inbox
+                .iter()
+                .map(|mail| WaitingMessageInfo { arrived: mail.arrived, source: mail.source })
+                .collect(),
             unaccepted: unaccepted.into_iter().map(|flight| flight.1).collect(),
             chains: shared.batches.iter().map(|batch| batch.links.len()).collect(),
             memory: Account::ALL.map(|account| (account, shared.memory.used_by(account))).into(),

@@ -51,10 +51,12 @@ impl Gp {
         messages: impl Iterator<Item = (NodeId, u32, Body)>,
         last: (NodeId, u32, Body),
     ) -> Result<(), Fault> {
+        // The costs follow in the order of the program: reception, work, messages.
         self.pay_for(received).await;
         if let Some(work) = work {
             self.work(work).await?;
         }
+        // Each message needs the clump buffer; only the last one is sent without waiting.
         for message in messages {
             self.clump_buffer_free().await;
             self.send_batch(vec![message]).await;
@@ -80,6 +82,7 @@ impl Gp {
     /// between.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
+            // The last message of a group releases the port of the receiver.
             let last = group.len().saturating_sub(1);
             let numbered = (0..).zip(group);
             numbered.map(move |(place, (words, body))| (destination, words, body, place < last))
@@ -142,7 +145,7 @@ impl Gp {
 
     /// Stops the board with a fault of its own software. The program never continues.
     async fn stop(&self, fault: Fault) {
-        self.shared.borrow_mut().stopped_by = Some(fault);
+        self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await
     }
 }

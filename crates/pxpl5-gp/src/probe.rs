@@ -1,4 +1,4 @@
-//! Marks that firmware records for the observer. They cost no simulated time and change nothing.
+//! Marks that firmware records for the observer. Marks cost no simulated time and change nothing.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId, ViewNumber};

@@ -1,7 +1,7 @@
 //! The board's i860 with its memory, which runs code and counts clocks.
 
 use crate::window;
-use i860::{Bus, Cpu, Program, Ram, RunEnd, Shelf, State, Trap, Unmapped};
+use i860::{Bus, Cpu, DecodedPrograms, Program, Ram, RunEnd, State, Trap, Unmapped};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
 use serde::{Deserialize, Serialize};
@@ -147,7 +147,7 @@ pub struct Processor {
     /// True if the memory holds the loaded program unchanged.
     is_as_loaded: bool,
     /// Decoded programs and their clocks, shared with other boards.
-    shelf: Rc<RefCell<Shelf>>,
+    shelf: Rc<RefCell<DecodedPrograms>>,
     /// All programs that were ever loaded.
     programs: Vec<Arc<Program>>,
     /// Address ranges of the output of both bin contexts.
@@ -208,12 +208,12 @@ impl Processor {
 
     /// Shares decoded programs and their clocks with other processors of the same core configuration. No simulated time
     /// changes.
-    pub fn share(&mut self, shelf: &Rc<RefCell<Shelf>>) {
+    pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
         self.shelf = Rc::clone(shelf);
     }
 
     /// Resets the processor and turns memoization off. No simulated time changes.
-    pub fn count_every_clock(&mut self) {
+    pub fn disable_memoization(&mut self) {
         self.core.memoise = false;
         self.cpu = Cpu::new(self.core);
     }
@@ -317,10 +317,12 @@ impl Processor {
     ) -> Result<Span, ProcessorFault> {
         let gp = self.gp;
         self.load(program)?;
+        // The program must be in memory before its label is called.
         let start = program.symbol(entry).ok_or_else(|| ProcessorFault::NoEntry { gp, label: entry.to_owned() })?;
         let begin = self.cpu.clocks();
         let state = &mut self.cpu.state;
         state.pc = start;
+        // A return to this address ends the run.
         state.r[LINK] = RETURN;
         for (number, value) in registers {
             state.r[*number] = *value;
@@ -343,17 +345,18 @@ impl Processor {
         let end = if self.breakpoints.is_empty() {
             self.cpu.run(&mut self.memory, Some(RETURN), budget)
         } else {
-            self.run_watched(begin, budget)
+            self.run_with_breakpoints(begin, budget)
         };
         self.is_as_loaded = self.cpu.close(shelf, known);
         end
     }
 
     /// Runs step by step (an instruction, a pair, or a branch with its slot) and records a hit at each breakpoint.
-    fn run_watched(&mut self, begin: u64, budget: u64) -> RunEnd {
+    fn run_with_breakpoints(&mut self, begin: u64, budget: u64) -> RunEnd {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
             let address = self.cpu.state.pc;
+            // Record the state before the instruction executes.
             if self.breakpoints.contains(&address) && self.hits.len() < KEPT_HITS {
                 let into_call = Self::CLOCK * (self.cpu.clocks() - begin);
                 let state = Box::new(self.cpu.state.clone());

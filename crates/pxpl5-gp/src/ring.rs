@@ -10,9 +10,9 @@
 //! The original software is not published. kernels/ring_rules.md states what the code assumes about it and how the code
 //! was written.
 //!
-//! Before each call, Rust code plays the part of the interface's DMA. It puts a message into the next buffer when its
-//! software begins, because the board's inbox has no limited number of buffers. When a chain is built, all earlier
-//! chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code plays the part of the interface's DMA. This code puts a message into the next buffer
+//! when its software begins, because the board's inbox has no limited number of buffers. When a chain is built, all
+//! earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -183,13 +183,16 @@ fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());
     }
+    // Only messages of words have a handler; other kinds are refused.
     let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();
     let handlers = [handler("queue"), handler("nohandler"), handler("nohandler")];
     const { assert!(KINDS == 3, "a handler for each kind") };
+    // Every receive descriptor points to its buffer, and the interface owns all of them.
     for number in 0..RX_COUNT {
         let buffer = BUFFERS + number * BUFFER_BYTES;
         processor.write(RX + number * DESCRIPTOR_BYTES, &[0, buffer])?;
     }
+    // The free queue entries form a linked list.
     for number in 0..ENTRY_COUNT {
         let next = if number + 1 < ENTRY_COUNT { ENTRIES + (number + 1) * ENTRY_BYTES } else { 0 };
         processor.write(ENTRIES + number * ENTRY_BYTES, &[next])?;

@@ -3,7 +3,7 @@
 
 use pxpl5_gp::{
     Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
-    Processor, ProcessorFault, ProgramLook, Stage, StageEdge, WaitingMail, Work,
+    Processor, ProcessorFault, ProgramSnapshot, Stage, StageEdge, WaitingMessageInfo, Work,
 };
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, PictureNumber, RegionId, SurfaceId, ViewNumber};
@@ -327,7 +327,7 @@ fn interrupted() -> Rig {
 #[test]
 fn who_looks_sees_work_that_is_left_and_what_waits() {
     let mut rig = interrupted();
-    let program = |priority, waits_for, left_ns: Option<u64>| ProgramLook {
+    let program = |priority, waits_for, left_ns: Option<u64>| ProgramSnapshot {
         priority,
         waits_for,
         work_left: left_ns.map(Span::from_ns),
@@ -347,7 +347,7 @@ fn who_looks_sees_work_that_is_left_and_what_waits() {
     assert_eq!(programs(&rig, 1_300), both);
     let ends = [program(Priority::Interrupt, WORK, None), program(Priority::Foreground, WORK, Some(2_000))];
     assert_eq!(programs(&rig, 1_500), ends, "at the instant at which it ends");
-    let mail = |arrived_ns, source| WaitingMail { arrived: ns(arrived_ns), source: NodeId(source) };
+    let mail = |arrived_ns, source| WaitingMessageInfo { arrived: ns(arrived_ns), source: NodeId(source) };
     assert_eq!(rig.board.look(ns(1_300)).inbox, [mail(1_200, 6), mail(1_250, 5)]);
 
     rig.run_to(10_000);
@@ -412,9 +412,9 @@ fn breakpoints_are_met_where_there_is_a_processor() {
 }
 
 /// Work that takes this many nanoseconds by the table.
-struct Handing(u64);
+struct BinHandoffWork(u64);
 
-impl Work for Handing {
+impl Work for BinHandoffWork {
     fn by_table(&self, _: &GpTiming) -> Span {
         Span::from_ns(self.0)
     }
@@ -437,7 +437,7 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
             let received = gp.next_message().await;
             let (_, work, count) = all.borrow_mut().remove(0);
             let messages = (0..count as u16).map(|n| (NodeId(1 + n), 1, word(0).1));
-            let work = work.map(|hundreds| Handing(100 * hundreds));
+            let work = work.map(|hundreds| BinHandoffWork(100 * hundreds));
             gp.answer(&received, work.as_ref(), messages, (NodeId(0), 1, word(0).1)).await?;
         }
     });

@@ -72,12 +72,14 @@ impl Display for HiRes {
             DisplayEvent::Tick(tick) => {
                 self.scans += 1;
                 for (surface, board) in self.boards.iter_mut().enumerate() {
+                    // A board swaps only if a request arrived before this tick.
                     if let Some(buffer) = board.swap(context.now()) {
                         context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
                     }
                 }
             }
             DisplayEvent::Delivered { port, body } => {
+                // Ports are assigned to the boards in turn.
                 let surface = port % self.boards.len();
                 match self.boards[surface].receive(body, context.now()) {
                     BufferReceipt::Region(pixels, first_part_at) => {
@@ -96,6 +98,7 @@ impl Display for HiRes {
         let pixel = u64::from(y) * self.config.width + u64::from(x);
         let visible = u64::from(x) < self.config.width && u64::from(y) < self.config.height;
         let frame = self.tick(period.next()).since(self.tick(period));
+        // The pixels share the period evenly, because the scan has no blanking.
         let share = u128::from(frame.0) * u128::from(pixel) / u128::from(self.config.width * self.config.height);
         visible.then(|| self.tick(period) + Span(share as u64))
     }
@@ -148,6 +151,7 @@ impl DisplayConfig for HiResConfig {
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         DisplayConfig::check(self)?;
         let boards = nodes.len() / self.ports as usize;
+        // Every board needs the same number of ports.
         if boards == 0 || !nodes.len().is_multiple_of(self.ports as usize) {
             let (ports, found) = (self.ports, nodes.len());
             return Err(DisplayError(format!("hires.ports: expected a multiple of {ports} nodes, found {found}")));

@@ -3,8 +3,8 @@
 //! A pass over the application scenes is executed on a board, and its clocks are attributed to primitives:
 //!
 //! ```text
-//!   clocks of triangles in a pass = triangle * (triangles) + guard * (of these, cut by the clipper) + entry * (their entries of bins)
-//!   clocks of spheres             = sphere * (spheres) + entry * (their entries of bins)
+//!   clocks of triangles in a pass = triangle * (triangles) + guard * (clipped triangles) + entry * (bin entries)
+//!   clocks of spheres             = sphere * (spheres) + entry * (bin entries)
 //! ```
 //!
 //! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
@@ -19,7 +19,7 @@
 //! converge.
 //!
 //! ```text
-//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (of these, with spheres)
+//!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
 //! ```
 //!
 //! - `structure` is the cost of one more empty structure in the display list.
@@ -40,7 +40,7 @@ pub use strips::{StripTimes, strip_times};
 
 use glam::Mat4;
 use pphigs::{
-    DisplayList, DisplayStructure, Editing, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionBinning, Shading,
+    DisplayList, DisplayStructure, EditWork, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionBinning, Shading,
     Share, TransformCost,
 };
 use pxpl5_geometry::Viewport;
@@ -159,7 +159,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
         SCENES.iter().map(|scene| samples(version, of, scene, BOARDS)).collect::<Result<_, _>>()?;
     let of_spheres: Vec<Vec<SphereSample>> =
         SCENES.iter().map(|scene| sphere_samples(version, of, scene)).collect::<Result<_, _>>()?;
-    let begun: Vec<Begun> = SCENES.iter().map(|scene| begun(version, of, scene)).collect::<Result<_, _>>()?;
+    let begun: Vec<PassBeginning> = SCENES.iter().map(|scene| begun(version, of, scene)).collect::<Result<_, _>>()?;
     let edit_ns = edit_ns(version)?;
     let traffic: Vec<_> = SCENES.iter().map(|scene| messages::traffic(version, of, scene)).collect::<Result<_, _>>()?;
     let token_entry_ns = messages::token_entry_ns(&traffic);
@@ -230,7 +230,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::max(n, 1.0)
 }
 
-/// Returns the minimum and the maximum.
 fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
@@ -363,14 +362,14 @@ fn with_more_structures(list: DisplayList) -> DisplayList {
 }
 
 /// Times of the parts of the beginning of a pass.
-struct Begun {
+struct PassBeginning {
     pass_ns: f64,
     structure_ns: f64,
     /// Additional time of a view for a structure with spheres. `None` for scenes without spheres.
     sphere_view_ns: Option<f64>,
 }
 
-fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, ExperimentError> {
+fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<PassBeginning, ExperimentError> {
     // Measure the scene three times: whole, without spheres, and with more empty structures. The differences give the
     // cost of each part.
     let rig = |part: fn(DisplayList) -> DisplayList| Rig::of_list(version, scene, BOARDS, part);
@@ -381,7 +380,7 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Begun, Experi
     let more_ns = beginning_ns(of, rig(with_more_structures)?)?;
     let eyes = eyes_of_a_pass(of)[0].len() as f64;
     let structure_ns = (more_ns - plain_ns) / (MORE_STRUCTURES as f64 * eyes);
-    Ok(Begun {
+    Ok(PassBeginning {
         pass_ns: plain_ns - structure_ns * structures as f64 * eyes,
         structure_ns,
         sphere_view_ns: (sphere_views > 0).then(|| (whole_ns - plain_ns) / (sphere_views as f64 * eyes)),
@@ -414,7 +413,7 @@ fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     let mut ns = |count: u32| {
         let edits = (0..count).map(|structure| ModelEdit { structure, model: Mat4::IDENTITY }).collect();
         let view = FrameView { number: ViewNumber::FIRST, eyes: Vec::new(), edits };
-        Editing(&view).by_code(&GpTiming::PAPERS, &mut processor).map(|span| span.0 as f64 / 1e3).map_err(fault)
+        EditWork(&view).by_code(&GpTiming::PAPERS, &mut processor).map(|span| span.0 as f64 / 1e3).map_err(fault)
     };
     // The difference removes the constant cost of a message.
     let [one, more] = [ns(1)?, ns(1 + EDITS)?];

@@ -44,7 +44,7 @@ pub struct Work {
     /// Number of pictures of an eye in a field, at most 1.
     pub pictures_a_field: f64,
     /// True if a closed form computes the pictures, for which all primitives are transformed first.
-    pub is_by_form: bool,
+    pub uses_closed_form: bool,
     /// Number of blocks drawn with one view, or 0 for a pipeline without blocks.
     pub batch: u64,
     /// Width of a block in pixels, or 0 for a pipeline without blocks.
@@ -157,11 +157,11 @@ impl Work {
             primitives: (scene.triangles().len() + scene.spheres().len()) as u64,
             eyes: plan.pipeline.eyes() as u64,
             pictures_a_field: 1.0,
-            is_by_form: false,
+            uses_closed_form: false,
             batch: whole("batch"),
             block: whole("block"),
             is_cycle_level: plan.level == Level::Cycle,
-            keeps_everything: keeps_everything || !plan.pipeline.can_forget(),
+            keeps_everything: keeps_everything || !plan.pipeline.can_discard_records(),
             is_tracked: plan.head.is_some(),
             computes_all_pixels: plan.pixels == Pixels::All,
         };
@@ -221,7 +221,7 @@ impl Work {
         let picture = eyes * (PICTURE_S + GP_S * self.gps as f64 + as_code);
         // Fields, pictures and blocks each add their own cost.
         let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
-        let load = if self.is_by_form { LOAD_S * eyes * primitives } else { 0.0 };
+        let load = if self.uses_closed_form { LOAD_S * eyes * primitives } else { 0.0 };
         let (runs, judged) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
         runs * run + load + judged
     }
@@ -237,7 +237,7 @@ mod tests {
         primitives: 417,
         eyes: 2,
         pictures_a_field: 1.0,
-        is_by_form: false,
+        uses_closed_form: false,
         batch: 0,
         block: 0,
         is_cycle_level: false,

@@ -111,7 +111,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     // An empty path is the error of a scene without a path.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
     Ok(match seed {
-        Some(seed) => ahead.looking_around(seed),
+        Some(seed) => ahead.with_glances(seed),
         None => ahead,
     })
 }

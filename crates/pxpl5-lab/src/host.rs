@@ -95,6 +95,8 @@ impl PixelWorker for PixelThreads {
         }
     }
 
+    /// Computes all waiting regions, ends the worker threads, and returns the number of computed regions.
+    ///
     /// # Panics
     ///
     /// Panics when a worker has panicked, which is a bug.

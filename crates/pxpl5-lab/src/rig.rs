@@ -26,7 +26,7 @@ use std::sync::Arc;
 use thiserror::Error;
 use tracking::motion::Still;
 use tracking::predict::PredictorKind;
-use tracking::rig::{InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace, Sighting};
+use tracking::rig::{InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace};
 use tracking::time::nearest_ps;
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
@@ -125,16 +125,16 @@ impl Rig {
         // Compare the oscilloscope's times with the pipeline's time stamps.
         let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
         let counted = frames.iter().map(|frame| behind_the_retrace(outcome.record(), frame.shown_at)).max();
-        Ok(measured.counted_in_the_scan(counted.unwrap_or_default()))
+        Ok(measured.with_frames_counted_in_scan(counted.unwrap_or_default()))
     }
 
-    /// Returns the experiment. At every sighting the reported head turns away from the lamp or back. The experiment
-    /// ends after the last frame must have been shown.
+    /// Returns the experiment of a measurement. At every sighting the reported head turns away from the lamp or back.
+    /// The experiment ends after the last frame must have been shown.
     fn experiment(
         &self,
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
-        sightings: &[Sighting],
+        sightings: &[LowPointReport],
     ) -> Result<Experiment, RigRunError> {
         // Even sightings make a light frame, odd ones a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
@@ -292,7 +292,7 @@ fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u3
 }
 
 /// Returns the first complete picture of each sighting, by the pipeline's records.
-fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<PictureTimes>, RigRunError> {
+fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, RigRunError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =
         sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();

@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec3};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Registration};
-use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels, Sampled, Slats};
+use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels, SampledPose, Slats};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
@@ -29,7 +29,7 @@ fn run(scene: Scene, head: Head) -> Result<Outcome, ExperimentError> {
 }
 
 /// Returns the view whose picture a field shows, and the time at which a pixel of the picture lights.
-fn view_of_field(outcome: &Outcome, (x, y): (u32, u32)) -> (Sampled, Time) {
+fn view_of_field(outcome: &Outcome, (x, y): (u32, u32)) -> (SampledPose, Time) {
     let display = outcome.record().display();
     let in_field = outcome.pictures().iter().find(|times| display.period_at(times.shown_at) == FIELD);
     let view = in_field.expect("Slats shows a picture a field").view;
@@ -48,9 +48,10 @@ fn a_translation_is_off_by_focal_length_times_way_over_distance() {
     const SPEED: f64 = 0.5;
     let room = || pxpl5_scene::builtin("room").expect("built in");
     // The wall ahead is 2 m away. `head.judge_at` overrides this distance.
-    for (judged_at, distance_m) in [(None, 2.0), (Some(5.0), 5.0), (Some(0.5), 0.5)] {
+    for (evaluated_at, distance_m) in [(None, 2.0), (Some(5.0), 5.0), (Some(0.5), 0.5)] {
         let head = head(Slide::right_at(SPEED));
-        let head = judged_at.map_or_else(|| head.clone(), |metres| head.clone().judged_at(metres).expect("in range"));
+        let head =
+            evaluated_at.map_or_else(|| head.clone(), |metres| head.clone().evaluated_at(metres).expect("in range"));
         let outcome = run(room(), head).expect("it runs");
         for pixel in [(320, 240), (100, 120), (600, 400)] {
             let (view, lights_at) = view_of_field(&outcome, pixel);
@@ -108,7 +109,7 @@ fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
         println!("{pixel:?}: {found} px, closed form {expected}, turned {turned_deg} deg");
         assert!(turned_deg.abs() > 0.5 && (found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
     }
-    let at_a_distance = head(Still(Pose::IDENTITY)).judged_at(2.0).expect("in range");
+    let at_a_distance = head(Still(Pose::IDENTITY)).evaluated_at(2.0).expect("in range");
     let outcome = run(wheel(hinge), at_a_distance).expect("it runs");
     assert!(PixelErrors::of(&outcome).pixels.max < 1e-9, "points at a distance do not move with objects");
 }

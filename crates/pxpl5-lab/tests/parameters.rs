@@ -109,7 +109,7 @@ fn a_slower_memory_makes_a_run_of_code_slower() {
 fn what_is_memoised_has_the_clocks_of_the_same_memory() {
     let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
     let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
-    let counted = experiment.clone().without(pxpl5_machine::Saving::RepeatedCode).run().expect("it is small");
+    let counted = experiment.clone().without(pxpl5_machine::Optimization::RepeatedCode).run().expect("it is small");
     assert_eq!(experiment.run().expect("it is small").report().trace_hash, counted.report().trace_hash);
 }
 

@@ -83,7 +83,7 @@ fn without_a_closed_form_the_message_only_asks_for_more() {
 #[test]
 fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_due() {
     let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
-    let short = experiment(slow(), "full-screen:12", 60).estimated_by(form);
+    let short = experiment(slow(), "full-screen:12", 60).with_estimates(form);
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
     let outcome = experiment(slow(), "full-screen:12", needed + needed / 10).run().expect("long enough");
     let report = outcome.report();

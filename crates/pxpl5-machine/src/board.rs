@@ -21,7 +21,7 @@ pub enum Board {
 
 /// Describes one event of the simulation for a debugger or a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Happening {
+pub struct EventDescription {
     /// Simulated time of the event.
     pub time: Time,
     /// Board that handles the event.
@@ -53,7 +53,7 @@ impl fmt::Display for Board {
     }
 }
 
-impl fmt::Display for Happening {
+impl fmt::Display for EventDescription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}: {}", self.time, self.board, self.what)
     }
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn what_happens_is_told_with_its_time_and_board() {
-        let happening = Happening { time: Time(7), board: Board::Renderer(3), what: "copy command begins" };
+        let happening = EventDescription { time: Time(7), board: Board::Renderer(3), what: "copy command begins" };
         assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
     }
 

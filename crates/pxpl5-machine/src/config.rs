@@ -72,7 +72,7 @@ impl PartialEq for MachineConfig {
             && self.boards() == other.boards()
             && self.displays.len() == other.displays.len()
             && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
-            && self.telling_parameters() == other.telling_parameters()
+            && self.identifying_parameters() == other.identifying_parameters()
     }
 }
 
@@ -227,7 +227,7 @@ impl MachineConfig {
     /// The result omits parameters of firmware and of the i860 that have the papers' values. Older versions could not
     /// set these parameters. Omitting them keeps the names of old experiments valid.
     #[must_use]
-    pub fn telling_parameters(&self) -> Vec<Parameter> {
+    pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }

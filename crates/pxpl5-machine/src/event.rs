@@ -1,6 +1,6 @@
 //! Events of a machine and their descriptions.
 
-use crate::board::{Board, Happening};
+use crate::board::{Board, EventDescription};
 use crate::ports::Ports;
 use pxpl5_display::DisplayEvent;
 use pxpl5_gp::GpEvent;
@@ -34,7 +34,7 @@ impl Event {
     }
 
     /// Returns a description of this event for a debugger.
-    pub(crate) fn happening(&self, time: Time, ports: &Ports) -> Happening {
+    pub(crate) fn happening(&self, time: Time, ports: &Ports) -> EventDescription {
         let (board, what) = match self {
             Self::Ring(event) => (Board::Ring, ring_what(event)),
             Self::FromRing(output) => brought(output, ports),
@@ -45,7 +45,7 @@ impl Event {
             Self::Tick(display, _) => (Board::Display(*display), "tick"),
             Self::Edge => (Board::Ring, "edge of the boards' clock"),
         };
-        Happening { time, board, what }
+        EventDescription { time, board, what }
     }
 }
 

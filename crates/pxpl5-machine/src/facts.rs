@@ -9,7 +9,7 @@ pub(crate) fn facts(kind: u64, message: &Message) -> [u64; 4] {
 }
 
 /// Returns the trace entry of a message that a host line delivered to a display's port.
-pub(crate) fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
+pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     match body {
         Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
         Body::Pixels(RegionPixels { target, part, .. }) => {
@@ -20,7 +20,7 @@ pub(crate) fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
 }
 
 /// Returns the trace entry of a mark.
-pub(crate) fn facts_of(mark: &Mark) -> [u64; 6] {
+pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
@@ -51,9 +51,9 @@ mod tests {
 
     #[test]
     fn what_a_line_brings_is_told_by_its_port_and_its_words() {
-        assert_eq!(facts_of_line(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
+        assert_eq!(host_line_facts(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
         let list = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
-        assert_eq!(facts_of_line(6, &Body::Commands(list)), [10, 6]);
+        assert_eq!(host_line_facts(6, &Body::Commands(list)), [10, 6]);
     }
 
     /// Published trace hashes depend on these codes: 2 means no surface, and surfaces from the third on have their
@@ -71,7 +71,7 @@ mod tests {
                 edge: StageEdge::End,
                 view: None,
             };
-            assert_eq!(facts_of(&mark), [4, 5, 6, number, 4, 1], "the fifth stage, its end");
+            assert_eq!(mark_facts(&mark), [4, 5, 6, number, 4, 1], "the fifth stage, its end");
         }
     }
 }

@@ -28,7 +28,7 @@ mod run_error;
 mod savings;
 mod traffic;
 
-pub use board::{Board, Happening};
+pub use board::{Board, EventDescription};
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
@@ -38,5 +38,5 @@ pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
 pub use record::Record;
 pub use run_error::RunError;
-pub use savings::Saving;
+pub use savings::Optimization;
 pub use traffic::{Traffic, Transfer};

@@ -13,16 +13,16 @@
 mod displays;
 
 use crate::agenda::{schedule_outputs, schedule_own};
-use crate::board::{Board, Happening};
+use crate::board::{Board, EventDescription};
 use crate::config::{ConfigError, MachineConfig};
 use crate::event::Event;
-use crate::facts::{facts, facts_of, facts_of_line};
+use crate::facts::{facts, host_line_facts, mark_facts};
 use crate::host_line::HostLine;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
 use crate::run_error::RunError;
-use crate::savings::Saving;
+use crate::savings::Optimization;
 use pxpl5_display::{DisplayContext, DisplayEvent};
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
@@ -147,12 +147,12 @@ impl Machine {
     }
 
     /// Disables an optimization of the simulator. Call this method before the machine runs.
-    pub fn give_up(&mut self, saving: Saving) {
+    pub fn disable(&mut self, saving: Optimization) {
         match saving {
-            Saving::IdleBoards => self.every_edge = true,
-            Saving::Transfers => self.record.ring.move_every_word(),
-            Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
-            Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
+            Optimization::IdleBoards => self.every_edge = true,
+            Optimization::Transfers => self.record.ring.move_every_word(),
+            Optimization::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
+            Optimization::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::disable_memoization),
         }
     }
 
@@ -164,9 +164,9 @@ impl Machine {
     }
 
     /// Discards marks, arrivals and swaps before an instant, to save memory. No simulated time changes.
-    pub fn forget_before(&mut self, instant: Time) {
+    pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
-        observation.forget_before(instant, |period| displays[0].tick(period));
+        observation.discard_before(instant, |period| displays[0].tick(period));
     }
 
     /// Returns the boards and everything observed so far.
@@ -268,7 +268,7 @@ impl Machine {
 
     /// Returns a description of the next event, or `None` if no event is pending.
     #[must_use]
-    pub fn next_happening(&self) -> Option<Happening> {
+    pub fn next_event_description(&self) -> Option<EventDescription> {
         self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
     }
 
@@ -279,7 +279,7 @@ impl Machine {
             Event::FromRing(output) => self.bring(now, output),
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
-            Event::HostLine(line) => self.host_says(now, line),
+            Event::HostLine(line) => self.host_line_event(now, line),
             Event::Display(display, event) => self.display_event(now, display, event),
             Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
@@ -417,11 +417,11 @@ impl Machine {
     }
 
     /// Delivers the messages of a host line to the first display and schedules the line's next arrival.
-    fn host_says(&mut self, now: Time, line: usize) {
+    fn host_line_event(&mut self, now: Time, line: usize) {
         let messages = self.host_lines[line].messages(now);
         self.schedule_host_line(line, now);
         for (port, body) in messages {
-            self.record.hash.record(now, &facts_of_line(port, &body));
+            self.record.hash.record(now, &host_line_facts(port, &body));
             compute_pixels(&mut self.pixels, &body);
             self.display_event(now, 0, DisplayEvent::Delivered { port, body });
         }
@@ -452,7 +452,7 @@ impl Machine {
         // Record the marks of its programs.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
-            hash.record(mark.time, &facts_of(&mark));
+            hash.record(mark.time, &mark_facts(&mark));
             observation.marks.push(mark);
         });
     }

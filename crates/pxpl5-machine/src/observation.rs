@@ -65,12 +65,12 @@ pub struct Observation {
     /// Messages and FIFO levels. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
-    pub forgotten: Forgotten,
+    pub forgotten: DiscardedSummary,
 }
 
-/// Summary of observations discarded by [`Machine::forget_before`](crate::Machine::forget_before) in a long run.
+/// Summary of observations discarded by [`Machine::discard_before`](crate::Machine::discard_before) in a long run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Forgotten {
+pub struct DiscardedSummary {
     /// Marks, arrivals and swaps before this instant were discarded. The last swap of each port was kept.
     pub before: Time,
     /// Period of the first swap in the whole run.
@@ -171,10 +171,10 @@ impl Observation {
     }
 
     /// Discards observations before `instant`. `tick` returns the start of a display period.
-    pub(crate) fn forget_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
+    pub(crate) fn discard_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
         let most_regions = self.most_regions_of_a_picture();
         if let Some(traffic) = &mut self.traffic {
-            traffic.forget_before(instant);
+            traffic.discard_before(instant);
         }
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
@@ -189,7 +189,7 @@ impl Observation {
         // Keep capacity for twice the held records: a run that discards regularly needs the space again soon.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
-        self.forgotten = Forgotten { before: instant, first_swap, most_regions };
+        self.forgotten = DiscardedSummary { before: instant, first_swap, most_regions };
     }
 
     /// Returns the swaps of a surface that are still held, in order.
@@ -240,18 +240,18 @@ mod tests {
         assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);
         // This instant lies between the swaps of both eyes for frame 7. The first eye's swap is the last one before it
         // and is kept.
-        observation.forget_before(Time(1_450), tick);
+        observation.discard_before(Time(1_450), tick);
         let left = observation.frames(2);
         assert_eq!(left, all.into_iter().filter(|(number, _)| *number >= 7).collect());
         assert_eq!(observation.first_swap(), Some(PeriodNumber(0)));
-        observation.forget_before(Time(1_900), tick);
+        observation.discard_before(Time(1_900), tick);
         assert_eq!(observation.first_swap(), Some(PeriodNumber(0)), "it stays known");
     }
 
     #[test]
     fn what_is_shown_stays_known_however_long_ago_it_was_swapped_in() {
         let mut observation = stereo();
-        observation.forget_before(Time(1_000_000), tick);
+        observation.discard_before(Time(1_000_000), tick);
         let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
         assert_eq!(left, EYES.map(|surface| (surface, 19)));
     }
@@ -303,7 +303,7 @@ mod tests {
         let mut observation = stereo();
         observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
         observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();
-        observation.forget_before(Time(900), tick);
+        observation.discard_before(Time(900), tick);
         assert!(observation.marks.iter().map(|mark| mark.time.0).eq(900..1_000));
         assert!(observation.arrivals.iter().map(|arrival| arrival.last_part_at.0).eq(900..1_000));
         for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {

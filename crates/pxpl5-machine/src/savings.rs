@@ -10,7 +10,7 @@ use std::str::FromStr;
 ///
 /// Unread pixels are skipped by a separate setting, `Pixels` of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Saving {
+pub enum Optimization {
     /// Boards sleep until their next event.
     ///
     /// If disabled, every processor polls its programs and the ring polls its arbiter at every edge of the boards' 40
@@ -31,7 +31,7 @@ pub enum Saving {
     RepeatedCode,
 }
 
-impl Saving {
+impl Optimization {
     /// All optimizations that an experiment can disable.
     pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
@@ -47,13 +47,13 @@ impl Saving {
     }
 }
 
-impl fmt::Display for Saving {
+impl fmt::Display for Optimization {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-impl FromStr for Saving {
+impl FromStr for Optimization {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -55,7 +55,7 @@ impl Traffic {
 
     /// Discards messages and changes before an instant, and keeps the channel use and FIFO levels valid at that
     /// instant.
-    pub(crate) fn forget_before(&mut self, instant: Time) {
+    pub(crate) fn discard_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
         self.busy_channels.drain(..last);
@@ -123,7 +123,7 @@ mod tests {
             announced: BTreeMap::new(),
         };
         let before = traffic.fifo_words(0);
-        traffic.forget_before(Time(20));
+        traffic.discard_before(Time(20));
         assert_eq!(traffic.transfers, [transfer(20), transfer(30)]);
         assert_eq!(traffic.busy_channels, [(Time(15), 2), (Time(25), 0)], "two channels were busy at 20");
         assert_eq!(traffic.fifo_words(0), [(Time(19), 20), (Time(22), 0)]);
@@ -161,7 +161,7 @@ mod tests {
     fn what_lies_at_the_instant_stays_with_the_state_before_it() {
         let busy_channels = vec![(Time(10), 1), (Time(15), 2), (Time(20), 1)];
         let mut traffic = Traffic { busy_channels, fifo_changes: vec![(0, Time(20), 5)], ..Traffic::default() };
-        traffic.forget_before(Time(20));
+        traffic.discard_before(Time(20));
         assert_eq!(traffic.busy_channels, [(Time(15), 2), (Time(20), 1)]);
         assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
     }
@@ -204,7 +204,7 @@ mod tests {
                 announced: BTreeMap::new(),
             };
             let before = traffic.clone();
-            traffic.forget_before(Time(instant));
+            traffic.discard_before(Time(instant));
             assert_eq!(traffic.transfers.len(), ends.iter().filter(|end| **end >= instant).count());
             assert_eq!(
                 traffic.records(),

@@ -1,6 +1,6 @@
 //! Latency from the head's pose to light, by stage.
 
-use pxpl5_run::{PictureTimes, Sampled, Samples, Settled};
+use pxpl5_run::{FinalResults, PictureTimes, SampledPose, Samples};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 
@@ -75,12 +75,12 @@ pub(crate) struct BudgetSum {
 const OLDER_POSES: usize = 64;
 
 /// Sampled views by their numbers.
-pub(crate) type Poses = BTreeMap<ViewNumber, Sampled>;
+pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
 pub(crate) const STAGES: usize = 6;
 
 impl BudgetSum {
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
             // The window has moved: everything summed so far lies before it.
@@ -110,13 +110,13 @@ impl BudgetSum {
 }
 
 /// Returns the poses that the head of a run still holds.
-pub(crate) fn poses(run: &Settled<'_>) -> Poses {
+pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
 /// Returns the duration of each stage, for every complete picture whose measured pose is still in memory.
 pub(crate) fn of_pictures<'a>(
-    run: &Settled<'_>,
+    run: &FinalResults<'_>,
     poses: &Poses,
     pictures: impl Iterator<Item = &'a PictureTimes>,
 ) -> Vec<[f64; STAGES]> {
@@ -125,7 +125,7 @@ pub(crate) fn of_pictures<'a>(
 }
 
 /// Returns the time between consecutive instants of a picture's way from the pose to light, in milliseconds.
-fn of_picture(run: &Settled<'_>, times: &PictureTimes, sampled: &Sampled) -> Option<[f64; STAGES]> {
+fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);
     // The stages lie between these consecutive instants.

@@ -69,7 +69,7 @@ impl Contents {
     }
 
     /// Returns the nearest hit, and its depth, among the structures selected by `structures` (indexed as in the scene).
-    pub(crate) fn met_of(
+    pub(crate) fn hit_among(
         &self,
         origin: DVec3,
         direction: DVec3,
@@ -229,7 +229,7 @@ mod tests {
         let met: Vec<_> = directions.filter_map(|d| Some((d, contents.met(eye, d, Time::ZERO)?))).collect();
         assert!(!met.is_empty());
         for (direction, content) in met {
-            let of = |structures: &[bool]| contents.met_of(eye, direction, Time::ZERO, structures);
+            let of = |structures: &[bool]| contents.hit_among(eye, direction, Time::ZERO, structures);
             assert_eq!(of(&all).map(|(_, content)| content), Some(content));
             assert_eq!(of(&none), None);
             let depth = (contents.place(&content, Time::ZERO) - eye).z / direction.z;

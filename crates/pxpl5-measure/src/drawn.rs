@@ -23,7 +23,7 @@ pub(crate) enum Drawn {
         on_screen: bool,
     },
     /// A picture that the display shifts while scanning it out (raster offset).
-    Shifted(Moment, DVec2),
+    AdvancedMotion(Moment, DVec2),
     /// Faces of a cube around the eye, addressed by the latched direction. The nearest point of all memories is
     /// visible.
     Faces(FacesSeen),
@@ -48,7 +48,7 @@ impl Drawn {
                 let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
                 Time(from.objects_at.0 + ahead_ps as u64)
             }
-            Self::Shifted(..) => light,
+            Self::AdvancedMotion(..) => light,
             Self::Faces(faces) => faces.aimed_at,
         }
     }
@@ -68,7 +68,7 @@ mod tests {
             assert_eq!(between.instant(light), Time(expected), "{part}");
         }
         assert_eq!(Drawn::View(moment(7)).instant(light), Time(7));
-        assert_eq!(Drawn::Shifted(moment(7), DVec2::ONE).instant(light), light);
+        assert_eq!(Drawn::AdvancedMotion(moment(7), DVec2::ONE).instant(light), light);
         let faces = FacesSeen { memories: Vec::new(), aimed_at: Time(5) };
         assert_eq!(Drawn::Faces(faces).instant(light), Time(5));
     }

@@ -1,16 +1,16 @@
 //! Sums of pixel errors, updated during a run or computed after it.
 
 use crate::distribution::Distribution;
-use crate::errors::{CENTRE, FieldError, PixelErrors, Showing, grid};
+use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid};
 use crate::raster::{offset, pose_of_field};
-use crate::registration::{Judge, middle};
+use crate::registration::{Evaluator, middle};
 use crate::shown::{Drawn, Moment, Seen, Shown};
-use pxpl5_run::{Cause, Estimator, HeadViews, Settled};
+use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use tracking::view::{PixelError, RasterOffset};
+use tracking::view::{Misregistration, RasterOffset};
 
 /// Sums the errors of a run's pictures as they are displayed.
 #[derive(Debug, Default)]
@@ -18,7 +18,7 @@ pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
     showing: Option<Showing>,
     without: Option<Cause>,
-    judging: Option<Judging>,
+    judging: Option<Evaluation>,
     /// First period of the result window, as far as known.
     window_from: Option<PeriodNumber>,
     collected: Option<Collected>,
@@ -31,10 +31,10 @@ impl ErrorSum {
     }
 
     /// Evaluates the periods that are final.
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
-        let judging = self.judging.get_or_insert_with(|| Judging::begin(run, head, showing, self.without));
+        let judging = self.judging.get_or_insert_with(|| Evaluation::begin(run, head, showing, self.without));
         let window_from = run.window.map(|window| window.first_period);
         if self.window_from != window_from {
             // The window has moved: everything summed so far lies before it.
@@ -46,7 +46,7 @@ impl ErrorSum {
         let fields = judging.fields(run);
         // With a cause turned off, recompute the poses that these fields show.
         if let Some(cause) = self.without {
-            judging.give_poses(run, head, &fields, cause);
+            judging.replace_poses(run, head, &fields, cause);
         }
         fields.for_each(|field| judging.judge(run, field, collected));
         judging.shown.forget(run);
@@ -59,8 +59,8 @@ impl ErrorSum {
 
 /// State of the evaluation of a run's pixels.
 #[derive(Debug)]
-struct Judging {
-    judge: Judge,
+struct Evaluation {
+    judge: Evaluator,
     shown: Shown,
     content: Content,
     /// True if a pixel is evaluated at the instant it was drawn for, instead of the instant of its light.
@@ -74,20 +74,20 @@ struct Judging {
 enum Content {
     Plain,
     /// The display shifts the raster. The offset is that of the current field, if the field has one.
-    Shifted(Estimator, Option<RasterOffset>),
+    AdvancedMotion(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
 }
 
-impl Judging {
-    fn begin(run: &Settled<'_>, head: &Arc<HeadViews>, showing: Showing, without: Option<Cause>) -> Self {
+impl Evaluation {
+    fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>, showing: Showing, without: Option<Cause>) -> Self {
         let estimator = Estimator::new(head, without);
         let content = match showing {
             Showing::Plain => Content::Plain,
-            Showing::RasterOffset => Content::Shifted(estimator, None),
+            Showing::RasterOffset => Content::AdvancedMotion(estimator, None),
             Showing::Ideal => Content::Ideal(estimator),
         };
         Self {
-            judge: Judge::new(run, head),
+            judge: Evaluator::new(run, head),
             shown: Shown::begin(run, head),
             content,
             at_one_instant: without == Some(Cause::ScanOut),
@@ -96,16 +96,16 @@ impl Judging {
     }
 
     /// Returns the periods of the window that are final and not evaluated yet.
-    fn fields(&mut self, run: &Settled<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
+    fn fields(&mut self, run: &FinalResults<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
         let fields = run.periods_from(self.next);
         self.next = self.next.max(run.until);
         fields
     }
 
     /// Replaces the poses of the visible views by those that the run would have had without one cause of error.
-    fn give_poses(
+    fn replace_poses(
         &mut self,
-        run: &Settled<'_>,
+        run: &FinalResults<'_>,
         head: &Arc<HeadViews>,
         fields: &(impl Iterator<Item = PeriodNumber> + Clone),
         cause: Cause,
@@ -118,12 +118,12 @@ impl Judging {
             pixels.flat_map(move |(x, y, at)| shown.views_at(run, [x, y], field, at))
         };
         let seen: BTreeSet<ViewNumber> = fields.clone().flat_map(of_field).collect();
-        self.shown.give_poses(head, &seen, cause);
+        self.shown.replace_poses(head, &seen, cause);
     }
 
-    fn judge(&mut self, run: &Settled<'_>, field: PeriodNumber, collected: &mut Collected) {
+    fn judge(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         // With a shifted raster, first find the offset of this field.
-        if let Content::Shifted(estimator, of_field) = &mut self.content {
+        if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
             *of_field = pose.map(|pose| offset(estimator, run.record.display(), field, &pose));
         }
@@ -142,14 +142,14 @@ impl Judging {
         collected.take(field, begin, &of_field, centre);
     }
 
-    fn seen(&mut self, run: &Settled<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+    fn seen(&mut self, run: &FinalResults<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         match &mut self.content {
             Content::Plain => self.shown.seen(run, place, field, at),
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
-            Content::Shifted(_, offset) => match self.shown.seen(run, place, field, at) {
+            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, at) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.judge.view, at.0));
-                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::Shifted(moment, shift)))
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
                 other => other,
@@ -161,7 +161,7 @@ impl Judging {
     }
 
     /// Returns the error of a pixel. If there is none, increments the counter of the reason.
-    fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<PixelError> {
+    fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
         let (error, unjudged) = match seen {
@@ -169,8 +169,8 @@ impl Judging {
             Seen::Incomplete => (None, &mut errors.incomplete),
             Seen::Before => (None, &mut errors.before),
             Seen::Complete(drawn) => {
-                let judged_at = if self.at_one_instant { drawn.instant(at) } else { at };
-                (self.judge.error(middle(x, y), &drawn, judged_at), &mut errors.behind)
+                let evaluated_at = if self.at_one_instant { drawn.instant(at) } else { at };
+                (self.judge.error(middle(x, y), &drawn, evaluated_at), &mut errors.behind)
             }
         };
         *unjudged += u64::from(error.is_none());
@@ -199,14 +199,20 @@ impl Collected {
     }
 
     /// Adds the errors of a field that begins at the instant `begin`.
-    fn take(&mut self, field: PeriodNumber, begin: Time, of_field: &[PixelError], centre: Option<PixelError>) {
+    fn take(
+        &mut self,
+        field: PeriodNumber,
+        begin: Time,
+        of_field: &[Misregistration],
+        centre: Option<Misregistration>,
+    ) {
         of_field.iter().for_each(|error| push(&mut self.grid, error));
         let Some(centre) = centre else { return };
         push(&mut self.centre, &centre);
         if self.errors.by_field.len() < self.fields_kept {
             let mean_px = of_field.iter().map(|error| error.pixels).sum::<f64>() / of_field.len() as f64;
             let time_s = begin.since(Time::ZERO).as_ms() * 1e-3;
-            self.errors.by_field.push(FieldError { field, time_s, mean_px, centre_px: centre.pixels });
+            self.errors.by_field.push(FieldMisregistration { field, time_s, mean_px, centre_px: centre.pixels });
         }
     }
 
@@ -227,7 +233,7 @@ impl Collected {
 }
 
 /// Adds an error in pixels to the first distribution, and in degrees to the second.
-fn push([pixels, degrees]: &mut [Distribution; 2], error: &PixelError) {
+fn push([pixels, degrees]: &mut [Distribution; 2], error: &Misregistration) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);
 }
@@ -237,7 +243,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use pxpl5_machine::MachineConfig;
-    use pxpl5_run::{Experiment, Head, Keep, PipelineSettings, Pixels, Registry, Summing};
+    use pxpl5_run::{Experiment, Head, Keep, PipelineSettings, Pixels, Registry, StreamingObserver};
     use pxpl5_scene::builtin;
     use std::any::Any;
     use tracking::motion::Synthetic;
@@ -251,8 +257,8 @@ mod tests {
         held: Vec<usize>,
     }
 
-    impl Summing for Watched {
-        fn take(&mut self, settled: &Settled<'_>) {
+    impl StreamingObserver for Watched {
+        fn take(&mut self, settled: &FinalResults<'_>) {
             self.sum.take(settled);
             self.held.extend(self.sum.judging.iter().map(|judging| judging.shown.held()));
         }
@@ -277,7 +283,7 @@ mod tests {
                 Head::new(motion, TrackerConfig::fastrak(), PredictorKind::ConstantVelocity, 7).expect("in range");
             let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
             let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
-            let outcome = experiment.summed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
+            let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
             let held: &Vec<usize> = outcome.said().expect("watched");
             assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
         }
@@ -289,8 +295,8 @@ mod tests {
     fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
         let mut collected = Collected::keeping(3);
         for field in 1..=5 {
-            let error = PixelError { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };
-            let of_field = [error, PixelError { pixels: 0.0, degrees: 0.0, ..error }];
+            let error = Misregistration { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };
+            let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
         let said = collected.said();

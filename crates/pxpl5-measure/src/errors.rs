@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Errors of one field (one display period).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FieldError {
+pub struct FieldMisregistration {
     /// Number of the evaluated display period.
     pub field: PeriodNumber,
     /// Start of the period in simulated time, in seconds.
@@ -48,7 +48,7 @@ pub struct PixelErrors {
     ///
     /// A run that keeps only statistics has the first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields here.
     #[serde(skip)]
-    pub by_field: Vec<FieldError>,
+    pub by_field: Vec<FieldMisregistration>,
     /// Error of each evaluated pixel, in pixels.
     ///
     /// A run that keeps only statistics has the first 20,971 fields here. Percentiles of longer runs have a relative

@@ -4,32 +4,32 @@ use crate::budget::{Budget, BudgetSum};
 use crate::error_sum::ErrorSum;
 use crate::errors::PixelErrors;
 use crate::step_sum::{StepSum, Steps};
-use crate::turn_sum::{TurnSum, Turns};
-use pxpl5_run::{Settled, Summing};
+use crate::turn_sum::{RotationLatencySum, Turns};
+use pxpl5_run::{FinalResults, StreamingObserver};
 use std::any::Any;
 
 /// A streaming observer for runs that keep only statistics.
 ///
 /// It collects the latency from head to light, rotation latencies of address recalculation displays, and errors in
-/// pixels. Enable it with `experiment.keep(Keep::Statistics).summed_by(Some(HeadSum::begin))`.
+/// pixels. Enable it with `experiment.keep(Keep::Statistics).observed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {
     budget: BudgetSum,
-    turns: TurnSum,
+    turns: RotationLatencySum,
     steps: StepSum,
     errors: ErrorSum,
 }
 
 impl HeadSum {
-    /// Creates the observer, for [`Experiment::summed_by`](pxpl5_run::Experiment::summed_by).
+    /// Creates the observer, for [`Experiment::observed_by`](pxpl5_run::Experiment::observed_by).
     #[must_use]
-    pub fn begin() -> Box<dyn Summing> {
+    pub fn begin() -> Box<dyn StreamingObserver> {
         Box::<Self>::default()
     }
 }
 
-impl Summing for HeadSum {
-    fn take(&mut self, settled: &Settled<'_>) {
+impl StreamingObserver for HeadSum {
+    fn take(&mut self, settled: &FinalResults<'_>) {
         self.budget.take(settled);
         self.turns.take(settled);
         self.steps.take(settled);
@@ -39,13 +39,13 @@ impl Summing for HeadSum {
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
         let Self { budget, turns, steps, errors } = *self;
         let (turns, steps) = (turns.said(), steps.result());
-        Box::new(HeadSaid { end_to_end: budget.said(), turns, steps, error: errors.said() })
+        Box::new(HeadResults { end_to_end: budget.said(), turns, steps, error: errors.said() })
     }
 }
 
 /// Results of a [`HeadSum`].
 #[derive(Clone, Debug)]
-pub(crate) struct HeadSaid {
+pub(crate) struct HeadResults {
     pub(crate) end_to_end: Budget,
     pub(crate) turns: Turns,
     pub(crate) steps: Vec<Steps>,

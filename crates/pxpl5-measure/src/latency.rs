@@ -9,9 +9,9 @@ pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
 }
 
 /// Returns the statistics of each latency part in milliseconds, over all complete pictures in the window.
-pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<NamedStatistics> {
+pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
-    let named = parts.map(|(part, ms): (_, &Samples)| NamedStatistics {
+    let named = parts.map(|(part, ms): (_, &Samples)| LatencyPartStatistics {
         name: part.name.to_owned(),
         in_published_latency: part.published,
         statistics: ms.statistics().defined(part.definition),
@@ -21,7 +21,7 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<NamedStatistics>
 
 /// Statistics of one part of the latency.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct NamedStatistics {
+pub struct LatencyPartStatistics {
     /// Name of the part, as in [`LATENCY_PARTS`].
     pub name: String,
     /// True if the latency stated in the papers includes this part.

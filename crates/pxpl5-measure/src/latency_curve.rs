@@ -23,7 +23,7 @@ impl LatencyCurve {
         let latency_ps = latency_ms * PS_PER_MS;
         let times = (0..).map(|n| latency_ps + n * NTSC_FIELD_PS).take_while(|t| *t < seconds * PS_PER_S);
         let points = times.filter_map(|t| {
-            let error = view.centre_error(&motion.pose(t - latency_ps), &motion.pose(t), distance_m)?;
+            let error = view.centre_misregistration(&motion.pose(t - latency_ps), &motion.pose(t), distance_m)?;
             Some((t as f64 / PS_PER_S as f64, error.pixels))
         });
         Self { latency_ms, points: points.collect() }

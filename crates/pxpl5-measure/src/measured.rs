@@ -2,8 +2,8 @@
 
 use crate::Report;
 use crate::errors::PixelErrors;
+use crate::head_results::pixel_errors;
 use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
-use crate::of_outcome::pixel_errors;
 use crate::pictures::picture;
 use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};

@@ -4,7 +4,7 @@ use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
 use pxpl5_display::Display;
-use pxpl5_run::{Estimator, Outcome, Raster, Settled};
+use pxpl5_run::{Estimator, FinalResults, Outcome, Raster};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use tracking::view::{HmdView, RasterOffset};
@@ -134,12 +134,12 @@ impl<'a> RasterOffsets<'a> {
 }
 
 /// Returns the single pose for which a whole field was drawn, if there is one.
-pub(crate) fn pose_of_field(run: &Settled<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
+pub(crate) fn pose_of_field(run: &FinalResults<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
     let display = run.record.display();
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
     match shown.drawn(run, [x, y], field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
-        Drawn::Between { .. } | Drawn::Shifted(..) | Drawn::Faces(_) => None,
+        Drawn::Between { .. } | Drawn::AdvancedMotion(..) | Drawn::Faces(_) => None,
     }
 }

@@ -3,16 +3,16 @@
 use crate::content::{Content, Contents};
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{HeadViews, Outcome, Settled};
+use pxpl5_run::{FinalResults, HeadViews, Outcome};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 use tracking::Pose;
-use tracking::view::{HmdView, PixelError, dual_list};
+use tracking::view::{HmdView, Misregistration, dual_list};
 
 /// Computes registration errors by casting rays and projecting the hit points.
 #[derive(Debug)]
-pub(crate) struct Judge {
+pub(crate) struct Evaluator {
     pub(crate) view: HmdView,
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
@@ -21,8 +21,8 @@ pub(crate) struct Judge {
     distance_m: f64,
 }
 
-impl Judge {
-    pub(crate) fn new(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
+impl Evaluator {
+    pub(crate) fn new(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let view = view_of(run.record.display());
         let at_content = head.head().judge_at_m().is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
@@ -50,7 +50,7 @@ impl Judge {
         let direction = self.direction(place);
         let met = faces.memories.iter().filter_map(|(moment, structures)| {
             let Pose { position, orientation } = moment.pose;
-            self.contents.met_of(position, orientation * direction, moment.objects_at, structures)
+            self.contents.hit_among(position, orientation * direction, moment.objects_at, structures)
         });
         let nearest = met.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, content)| content);
         nearest.unwrap_or_else(|| {
@@ -64,7 +64,7 @@ impl Judge {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
-            Drawn::Shifted(moment, shift) => self.met(moment, place - *shift),
+            Drawn::AdvancedMotion(moment, shift) => self.met(moment, place - *shift),
             // Find by iteration the content that interpolation moves to this place.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
@@ -85,12 +85,12 @@ impl Judge {
     /// time.
     ///
     /// Returns `None` if the content is behind the eye.
-    pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<PixelError> {
+    pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<Misregistration> {
         let content = self.contents.place(&self.content(drawn, place), at);
         let seen = self.head.truth(at).view_of(content);
         let offset_px = place - self.view.project(seen)?;
         let degrees = angle_between(self.direction(place), seen).to_degrees();
-        Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
+        Some(Misregistration { offset_px, pixels: offset_px.length(), degrees })
     }
 }
 
@@ -109,8 +109,8 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 /// Evaluates the registration error of single pixels of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
-    run: Settled<'a>,
-    judge: Judge,
+    run: FinalResults<'a>,
+    judge: Evaluator,
     shown: Shown,
 }
 
@@ -120,14 +120,14 @@ impl<'a> Registration<'a> {
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let run = outcome.settled();
         let head = run.head?;
-        Some(Self { judge: Judge::new(&run, head), shown: Shown::of_run(&run, head), run })
+        Some(Self { judge: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
     /// Returns the error of a pixel in a field that scans its line.
     ///
     /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
     #[must_use]
-    pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
+    pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Misregistration> {
         let at = self.run.record.display().lights(0, x, y, field)?;
         let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };
         self.judge.error(middle(x, y), &drawn, at)

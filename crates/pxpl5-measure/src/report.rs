@@ -3,8 +3,8 @@
 use crate::budget::Budget;
 use crate::errors::PixelErrors;
 use crate::faces_report::FacesReport;
-use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
-use crate::of_outcome::{pixel_errors, untold};
+use crate::head_results::{missing_results_warning, pixel_errors};
+use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
@@ -67,7 +67,7 @@ pub struct Report {
     /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
     /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose to light.
-    pub latency_parts_ms: Vec<NamedStatistics>,
+    pub latency_parts_ms: Vec<LatencyPartStatistics>,
     /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds.
     ///
     /// Empty if the eyes have no TRANSFORM of their own.
@@ -190,8 +190,8 @@ impl Report {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: config.preset.clone(),
             config_hash: experiment.config_hash().to_string(),
-            level: experiment.level_of_modelling().name().to_owned(),
-            seed: experiment.seed_of_motion(),
+            level: experiment.modelling_level().name().to_owned(),
+            seed: experiment.motion_seed(),
             pipeline: pipeline.name().to_owned(),
             variant: pipeline
                 .settings()
@@ -202,7 +202,7 @@ impl Report {
             display: record.display().name().to_owned(),
             // Warnings and configuration.
             overrides: config.overrides(),
-            warnings: experiment.warnings().into_iter().chain(untold(outcome)).collect(),
+            warnings: experiment.warnings().into_iter().chain(missing_results_warning(outcome)).collect(),
             display_faults: faults(record).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,

@@ -1,7 +1,7 @@
 //! The region whose pixels are on the screen at any instant, derived from the arrivals of a run.
 
 use pxpl5_machine::Arrival;
-use pxpl5_run::{Settled, region_at};
+use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
@@ -42,7 +42,7 @@ impl Cut {
 
 impl Screen {
     /// Adds the arrivals since the last call, and replaces the swaps by those that the run still holds.
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
         arrived.for_each(|arrival| self.arrive(arrival));
         let swaps = run.record.observation().swaps_of(SurfaceId(0));
@@ -62,7 +62,7 @@ impl Screen {
     }
 
     /// Discards arrivals that other arrivals had covered by `instant`.
-    pub(crate) fn forget_before(&mut self, instant: Time) {
+    pub(crate) fn discard_before(&mut self, instant: Time) {
         for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
             let there = region.partition_point(|arrived| arrived.0 <= instant);
             region.drain(..there.saturating_sub(1));
@@ -148,7 +148,7 @@ mod tests {
         let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
         let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
         for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {
-            screen.forget_before(Time(instant));
+            screen.discard_before(Time(instant));
             assert_eq!(screen.targets().collect::<Vec<_>>(), targets[left..], "{instant}");
         }
     }

@@ -2,9 +2,9 @@
 
 pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
-use crate::turned::TurnedFaces;
+use crate::turned::LatchedFaces;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{Cause, Estimator, HeadViews, ResultWindow, Sampled, Settled, Source, WARM_UP_PICTURES};
+use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews, ResultWindow, SampledPose, Source, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,7 +39,7 @@ pub(crate) struct Shown {
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
     /// Memories and directions of an address recalculation display.
-    faces: Option<TurnedFaces>,
+    faces: Option<LatchedFaces>,
 }
 
 /// The moment for which a view was drawn, and the time up to which the host knew tracker reports.
@@ -51,7 +51,7 @@ struct Viewed {
 
 impl Shown {
     /// Creates the state for a run of which nothing was added yet.
-    pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
+    pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
             views: BTreeMap::new(),
@@ -59,19 +59,19 @@ impl Shown {
             pictures: 0,
             window: None,
             moments: BTreeMap::new(),
-            faces: TurnedFaces::begin(run, head),
+            faces: LatchedFaces::begin(run, head),
         }
     }
 
     /// Creates the state from all kept records of a run.
-    pub(crate) fn of_run(run: &Settled<'_>, head: &Arc<HeadViews>) -> Self {
+    pub(crate) fn of_run(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let mut shown = Self::begin(run, head);
         shown.take(run, head);
         shown
     }
 
     /// Adds the final pictures, arrivals and views of the run.
-    pub(crate) fn take(&mut self, run: &Settled<'_>, head: &HeadViews) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
         let display = run.record.display();
@@ -92,28 +92,28 @@ impl Shown {
     /// Discards everything that later periods cannot show.
     ///
     /// Views that use later reports are kept, because their pictures may still arrive.
-    pub(crate) fn forget(&mut self, run: &Settled<'_>) {
+    pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
         let instant = run.record.tick(run.until);
-        self.screen.forget_before(instant);
+        self.screen.discard_before(instant);
         let still_seen = self.still_seen(run, instant);
         self.moments.retain(|number, viewed| viewed.known >= instant || still_seen.contains(number));
         let on_screen: BTreeSet<PictureNumber> = self.screen.targets().map(|target| target.picture).collect();
         let moments = &self.moments;
         self.views.retain(|picture, view| moments.contains_key(view) || on_screen.contains(picture));
         self.complete.retain(|picture, _| self.views.contains_key(picture));
-        self.faces.iter_mut().for_each(|faces| faces.forget_before(instant));
+        self.faces.iter_mut().for_each(|faces| faces.discard_before(instant));
     }
 
     #[cfg(test)]
     pub(crate) fn held(&self) -> usize {
-        let of_faces = self.faces.as_ref().map_or(0, TurnedFaces::held);
+        let of_faces = self.faces.as_ref().map_or(0, LatchedFaces::held);
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
     /// Returns the older views that are visible at `instant` or may become visible later.
     ///
     /// For display memories, these are all views that are not yet covered.
-    fn still_seen(&self, run: &Settled<'_>, instant: Time) -> BTreeSet<ViewNumber> {
+    fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {
             return run.notes.all().iter().map(|note| note.view).collect();
         }
@@ -126,7 +126,7 @@ impl Shown {
     }
 
     /// Classifies the picture of a pixel that lights at `at`.
-    pub(crate) fn seen(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+    pub(crate) fn seen(&self, run: &FinalResults<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         if self.faces.is_none()
             && let Some(target) = self.screen.shown(x, y, field, at)
         {
@@ -141,16 +141,16 @@ impl Shown {
 
     /// Replaces the poses of the views `of` by those without one cause of error. All other views show nothing
     /// afterwards.
-    pub(crate) fn give_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
+    pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
-        let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
+        let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.known);
         let moments = sampled.into_iter().map(|sampled| {
             let pose = estimator.pose(sampled.known, sampled.objects_at);
-            (sampled.number, viewed(&Sampled { pose, ..sampled }))
+            (sampled.number, viewed(&SampledPose { pose, ..sampled }))
         });
         self.moments = moments.collect();
-        self.faces.iter_mut().for_each(|faces| faces.leave_out(without));
+        self.faces.iter_mut().for_each(|faces| faces.disable_cause(without));
     }
 
     /// Returns the views that a pixel shows when it lights at `at`.
@@ -158,7 +158,7 @@ impl Shown {
     /// The result has one view, or two for an interpolated picture. It is empty before the first arrival.
     pub(crate) fn views_at(
         &self,
-        run: &Settled<'_>,
+        run: &FinalResults<'_>,
         [x, y]: [u32; 2],
         field: PeriodNumber,
         at: Time,
@@ -170,12 +170,18 @@ impl Shown {
         target.and_then(|target| self.source(run, &target)).map(views_of).unwrap_or_default()
     }
 
-    fn source(&self, run: &Settled<'_>, target: &CopyTarget) -> Option<Source> {
+    fn source(&self, run: &FinalResults<'_>, target: &CopyTarget) -> Option<Source> {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
     /// Returns the source of a pixel that lights at `at`, or `None` before the first arrival.
-    pub(crate) fn drawn(&self, run: &Settled<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Option<Drawn> {
+    pub(crate) fn drawn(
+        &self,
+        run: &FinalResults<'_>,
+        [x, y]: [u32; 2],
+        field: PeriodNumber,
+        at: Time,
+    ) -> Option<Drawn> {
         let moment = |number: ViewNumber| self.moments.get(&number).map(|viewed| viewed.moment);
         if let Some(faces) = &self.faces {
             return faces.drawn(x, y, field, moment).map(Drawn::Faces);
@@ -197,7 +203,7 @@ fn views_of(source: Source) -> Vec<ViewNumber> {
     }
 }
 
-fn viewed(sampled: &Sampled) -> Viewed {
+fn viewed(sampled: &SampledPose) -> Viewed {
     let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at };
     Viewed { known: sampled.known, moment }
 }

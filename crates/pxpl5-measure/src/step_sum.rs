@@ -1,7 +1,7 @@
 //! How long a step of the head takes to light, for what each memory of a display with faces shows.
 
 use address_recalculation::{AddressRecalculationPipeline, Scan};
-use pxpl5_run::{FaceHistory, Samples, Settled, ShownMemory, Statistics};
+use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
@@ -34,7 +34,7 @@ pub(crate) struct Steps {
 }
 
 impl StepSum {
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let display: Option<&AddressRecalculationPipeline> = run.record.display_of_kind();
         let Some(scan) = display.and_then(|display| display.config().scan().ok()) else { return };
         let Some(history) = FaceHistory::held(run.record, run.notes) else { return };
@@ -61,7 +61,7 @@ impl StepSum {
 
 impl OfMemory {
     /// Takes the latency of what the memory shows in the middle of a field.
-    fn push(&mut self, run: &Settled<'_>, scan: &Scan, shown: &ShownMemory, field: PeriodNumber) {
+    fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
         // The measurement is looked up once: a long run gives up the views of updates that it shows for many fields.
         let begin = match self.begin {
@@ -90,7 +90,7 @@ impl OfMemory {
 }
 
 /// Returns the instant at which the pose behind a memory's picture was measured; `None` without a tracked head.
-fn measured_at(run: &Settled<'_>, shown: &ShownMemory) -> Option<Time> {
+fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
     let sampled = run.head?.sampled();
     sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at
 }

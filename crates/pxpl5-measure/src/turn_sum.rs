@@ -1,6 +1,6 @@
 //! Latency from a rotation of the head to light, over all fields of the window.
 
-use pxpl5_run::{RotationLatency, Samples, Settled, Statistics};
+use pxpl5_run::{FinalResults, RotationLatency, Samples, Statistics};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ pub struct RotationPart {
 
 /// Collects the rotation latency of the middle pixel of every field of the window, in milliseconds.
 #[derive(Debug, Default)]
-pub(crate) struct TurnSum {
+pub(crate) struct RotationLatencySum {
     next: PeriodNumber,
     /// First period of the result window, as far as known.
     window_from: Option<PeriodNumber>,
@@ -24,15 +24,15 @@ pub(crate) struct TurnSum {
     parts: Vec<Samples>,
 }
 
-/// Results of a [`TurnSum`]. Empty without a tracker, or if the display is not an address recalculation pipeline.
+/// Results of a [`RotationLatencySum`]. Empty without a tracker, or if the display is not an address recalculation pipeline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,
     pub(crate) parts_ms: Vec<RotationPart>,
 }
 
-impl TurnSum {
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+impl RotationLatencySum {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let window_from = run.window.map(|window| window.first_period);
         // The window has moved: everything summed so far lies before it.
         if self.parts.is_empty() || self.window_from != window_from {

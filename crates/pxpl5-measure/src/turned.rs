@@ -2,7 +2,7 @@
 
 use crate::drawn::{FacesSeen, Moment};
 use glam::DQuat;
-use pxpl5_run::{Cause, Estimator, FaceHistory, HeadViews, LatchedHead, Settled};
+use pxpl5_run::{Cause, Estimator, FaceHistory, FinalResults, HeadViews, OrientationTiming};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::cell::RefCell;
@@ -11,9 +11,9 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-pub(crate) struct TurnedFaces {
+pub(crate) struct LatchedFaces {
     history: FaceHistory,
-    latched: LatchedHead,
+    latched: OrientationTiming,
     head: Arc<HeadViews>,
     without: Option<Cause>,
     turns: RefCell<Turns>,
@@ -27,28 +27,28 @@ struct Turns {
     known: BTreeMap<(Time, Time), DQuat>,
 }
 
-impl fmt::Debug for TurnedFaces {
+impl fmt::Debug for LatchedFaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("TurnedFaces").field("latched", &self.latched).finish_non_exhaustive()
     }
 }
 
-impl TurnedFaces {
+impl LatchedFaces {
     /// Creates the state for a run, or returns `None` if the display is not an address recalculation pipeline.
-    pub(crate) fn begin(run: &Settled<'_>, head: &Arc<HeadViews>) -> Option<Self> {
+    pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Option<Self> {
         let history = FaceHistory::held(run.record, run.notes)?;
-        let latched = LatchedHead::of_run(run)?;
+        let latched = OrientationTiming::of_run(run)?;
         let turns = RefCell::new(Turns::new(head, None));
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
     /// Replaces the history by the display updates that the run still holds.
-    pub(crate) fn take(&mut self, run: &Settled<'_>) {
+    pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
     }
 
     /// Discards orientations that use reports before an instant.
-    pub(crate) fn forget_before(&mut self, instant: Time) {
+    pub(crate) fn discard_before(&mut self, instant: Time) {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
 
@@ -58,7 +58,7 @@ impl TurnedFaces {
     }
 
     /// Switches to the orientations that the run would have had without one cause of error.
-    pub(crate) fn leave_out(&mut self, cause: Cause) {
+    pub(crate) fn disable_cause(&mut self, cause: Cause) {
         self.without = Some(cause);
         self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
@@ -77,7 +77,7 @@ impl TurnedFaces {
         moment: impl Fn(ViewNumber) -> Option<Moment>,
     ) -> Option<FacesSeen> {
         // Find the report and the instant from which this pixel's orientation was predicted.
-        let (report, aimed_at) = self.latched.turned_by(&self.head, x, y, field)?;
+        let (report, aimed_at) = self.latched.orientation_of_pixel(&self.head, x, y, field)?;
         let orientation = self.turns.borrow_mut().at(&self.head, self.without, report, aimed_at);
         // Each memory keeps its position but is seen in this orientation.
         let seen = self.history.at(field).filter_map(|shown| {

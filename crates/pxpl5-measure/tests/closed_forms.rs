@@ -6,7 +6,7 @@
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Showing};
-use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
+use pxpl5_run::{Aim, Cause, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, SampledPose};
 use pxpl5_scene::builtin;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
@@ -88,7 +88,7 @@ struct Run {
     pipeline: &'static str,
     aim: Aim,
     outcome: Outcome,
-    sampled: BTreeMap<ViewNumber, Sampled>,
+    sampled: BTreeMap<ViewNumber, SampledPose>,
     /// First field that shows each picture, and its view.
     shown: Vec<(u64, ViewNumber)>,
     /// For each block of frameless rendering, the arrivals with their times and updates.
@@ -103,7 +103,7 @@ impl Run {
         let tracker = TrackerConfig::ideal();
         let predictor = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, &tracker);
         let head = Head::predicted_by(Arc::new(motion), tracker, predictor, 1);
-        let head = head.expect("in range").aiming(aim);
+        let head = head.expect("in range").with_aim(aim);
         let scene = Arc::new(builtin("full-screen:2").expect("built in"));
         let experiment = Experiment::with(MachineConfig::small_hmd(), built, scene).head(head);
         let outcome = experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles");

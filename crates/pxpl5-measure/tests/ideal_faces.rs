@@ -28,7 +28,7 @@ fn under_a_slide_a_pixel_is_off_by_the_way_since_the_first_of_its_field() {
     for (pipeline, scene) in pipelines {
         let motion = Arc::new(Slide::right_at(speed));
         let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1).expect("in range");
-        let head = head.aiming(Aim::FirstPixel).judged_at(distance_m).expect("in range");
+        let head = head.with_aim(Aim::FirstPixel).evaluated_at(distance_m).expect("in range");
         let (name, config) = (pipeline.name(), pipeline.adapt(MachineConfig::small_hmd()));
         let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
         let outcome = experiment.fields(44).pixels(Pixels::Off).run().expect("it runs");

@@ -19,7 +19,7 @@ fn experiment(pipeline: &str, machine: MachineConfig, scene: Scene, fields: u64)
     let pipeline = (Registry::of_papers().pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
     let config = pipeline.adapt(machine);
     let experiment = Experiment::with(config, pipeline, Arc::new(scene)).fields(fields).pixels(Pixels::Off);
-    experiment.summed_by(Some(HeadSum::begin))
+    experiment.observed_by(Some(HeadSum::begin))
 }
 
 fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
@@ -33,7 +33,7 @@ fn synthetic() -> Synthetic {
 /// Returns a walk of twenty metres back and forth, with a head that looks around.
 fn walk() -> Walk {
     let corners = [DVec3::ZERO, DVec3::new(0.0, 0.0, -10.0), DVec3::new(1.0, 0.0, 0.0)];
-    Walk::new(&corners, 0.6).expect("a way").looking_around(5)
+    Walk::new(&corners, 0.6).expect("a way").with_glances(5)
 }
 
 /// Returns a tracker that is silent between two times of the run.
@@ -56,7 +56,7 @@ fn experiments() -> Vec<Experiment> {
         slats(2_000).head(head(synthetic(), fastrak(), kalman)),
         slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).before(Raster::Vdrt)),
         slats(2_000).head(head(synthetic(), silent(5.0, 6.5), velocity)),
-        control(2_000).head(head(synthetic(), fastrak(), velocity).aiming(Aim::FirstPixel)),
+        control(2_000).head(head(synthetic(), fastrak(), velocity).with_aim(Aim::FirstPixel)),
         control(2_000).head(head(walk(), TrackerConfig::optical_ceiling(), kalman).before(Raster::Vdrt)),
         control(1_500).head(head(synthetic(), TrackerConfig::polhemus_3space(), none)).on_demand(),
         experiment("jitp-field", small(), scene("mig", 60), 1_500).head(head(synthetic(), fastrak(), kalman)),
@@ -87,7 +87,7 @@ fn said(outcome: &Outcome) -> String {
     let mut report = Report { host_seconds: None, ..outcome.report() };
     // The latency of translation needs the whole run, and is null in a run that has discarded records.
     for memory in report.arp.iter_mut().flat_map(|faces| &mut faces.memories) {
-        assert!(!outcome.has_forgotten() || memory.translation_latency_ms.is_none());
+        assert!(!outcome.has_discarded_records() || memory.translation_latency_ms.is_none());
         memory.translation_latency_ms = None;
         memory.translation_latency_parts_ms.clear();
     }
@@ -103,7 +103,7 @@ fn assert_same(experiment: &Experiment) {
     let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
     assert_eq!(other, None, "{name}");
     assert_eq!(expected.len(), found.len(), "{name}");
-    assert!(statistics.has_forgotten() && !everything.has_forgotten(), "{name}: records were given up");
+    assert!(statistics.has_discarded_records() && !everything.has_discarded_records(), "{name}: records were given up");
     let of_head = everything.report().head.expect("tracked");
     assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
     let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
@@ -131,7 +131,7 @@ fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
 #[test]
 fn of_records_that_nobody_summed_up_a_report_says_that_they_are_gone() {
     let experiment = experiments().swap_remove(0);
-    let silent = run(&experiment.clone().summed_by(None), Keep::Statistics).report();
+    let silent = run(&experiment.clone().observed_by(None), Keep::Statistics).report();
     let said: Vec<&String> = silent.warnings.iter().filter(|warning| warning.contains("last pictures alone")).collect();
     assert_eq!(said.len(), 1, "{:?}", silent.warnings);
     for keep in [Keep::Everything, Keep::Statistics] {

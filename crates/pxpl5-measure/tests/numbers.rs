@@ -169,7 +169,7 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
         pictures: 5,
     };
     for (estimates, expected, advice) in cases {
-        let experiment = experiment.clone().estimated_by(Some(estimates));
+        let experiment = experiment.clone().with_estimates(Some(estimates));
         let heavy = TooHeavy::of(&experiment, &due).expect("late ones");
         assert_eq!((heavy.due, heavy.not_shown, heavy.triangles, heavy.triangles_in_time), (8, 3, n, expected));
         assert!(heavy.advice.contains(advice), "{heavy}");

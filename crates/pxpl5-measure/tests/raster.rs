@@ -62,7 +62,7 @@ fn run(axis: DVec3, raster: Raster) -> Outcome {
     let registry = Registry::of_papers();
     let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
     let head = Head::new(Arc::new(Turning { axis }), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").aiming(Aim::Middle).before(raster);
+    let head = head.expect("in range").with_aim(Aim::Middle).before(raster);
     let scene = Arc::new(builtin("full-screen:2").expect("built in"));
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
     experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles")
@@ -186,8 +186,9 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
         let [seen_right, seen_up] = after(right, up, turned(error.field.0, 120, 320));
         assert!((error.centre_px - (seen_right - right).hypot(seen_up - up)).abs() < 1e-6, "{error:?}");
     }
-    let mean =
-        |of: fn(&pxpl5_measure::FieldError) -> f64| errors.by_field.iter().map(of).sum::<f64>() / fields.len() as f64;
+    let mean = |of: fn(&pxpl5_measure::FieldMisregistration) -> f64| {
+        errors.by_field.iter().map(of).sum::<f64>() / fields.len() as f64
+    };
     assert!((mean(|error| error.mean_px) - errors.pixels.mean).abs() < 1e-9);
     assert!((mean(|error| error.centre_px) - errors.centre_px.mean).abs() < 1e-9);
     assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.judged, 0, 0));

@@ -24,7 +24,7 @@ impl Progress {
     }
 
     /// Returns true if the work should stop.
-    pub(crate) fn is_given_up(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::attended::{Progress, attended};
 use crate::errors::{failed_run, raised, wrong_setting};
-use crate::motion::{Called, Motion};
+use crate::motion::{CallableMotion, Motion};
 use crate::outcome::Outcome;
 use crate::policy::{Asked, PolicyPipeline};
 use crate::scene::Scene;
@@ -23,7 +23,7 @@ pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
     /// Python callable that supplies the motion during the run, if any.
-    motion: Option<Arc<Called>>,
+    motion: Option<Arc<CallableMotion>>,
     policy: Option<Arc<Asked>>,
 }
 
@@ -151,7 +151,7 @@ impl Experiment {
 /// Largest number of fields of a run that stops in every field, so that Ctrl-C takes effect soon.
 const LOOKED_AT: u64 = 20_000;
 
-type AskedOfPython = (Option<Arc<Called>>, Option<Arc<Asked>>);
+type AskedOfPython = (Option<Arc<CallableMotion>>, Option<Arc<Asked>>);
 
 fn run(
     native: &Native,
@@ -163,7 +163,7 @@ fn run(
     // A short run stops in every field, a long one only for progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
-    let host = Attended { workstation, told: Arc::clone(&told), motion, policy };
+    let host = StoppableHost { workstation, told: Arc::clone(&told), motion, policy };
     let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
         told.tell(field.since(PeriodNumber::FIRST), fields);
         Ok(())
@@ -172,26 +172,26 @@ fn run(
 }
 
 /// The host computer of a run that Python may stop.
-struct Attended {
+struct StoppableHost {
     workstation: Workstation,
     told: Arc<Progress>,
-    motion: Option<Arc<Called>>,
+    motion: Option<Arc<CallableMotion>>,
     policy: Option<Arc<Asked>>,
 }
 
-impl fmt::Debug for Attended {
+impl fmt::Debug for StoppableHost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Attended").field("workstation", &self.workstation).finish_non_exhaustive()
     }
 }
 
-impl Host for Attended {
+impl Host for StoppableHost {
     fn seconds(&self) -> Option<f64> {
         self.workstation.seconds()
     }
 
-    fn is_given_up(&self) -> bool {
-        self.told.is_given_up()
+    fn is_stopped(&self) -> bool {
+        self.told.is_stopped()
             || self.motion.as_ref().is_some_and(|called| called.has_raised())
             || self.policy.as_ref().is_some_and(|asked| asked.has_raised())
     }

@@ -22,7 +22,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct Motion {
     pub(crate) moving: Arc<dyn Moving + Send + Sync>,
     /// Python callable of the motion, which stores its exceptions. `None` for other motions.
-    pub(crate) called: Option<Arc<Called>>,
+    pub(crate) called: Option<Arc<CallableMotion>>,
     about: String,
 }
 
@@ -92,7 +92,7 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (pose, *, name = "callable"))]
     fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
-        let called = Arc::new(Called { pose, name: name.to_owned(), raised: Mutex::default() });
+        let called = Arc::new(CallableMotion { pose, name: name.to_owned(), raised: Mutex::default() });
         Self { moving: called.clone(), called: Some(called), about: name.to_owned() }
     }
 
@@ -132,13 +132,13 @@ impl Motion {
 }
 
 /// A motion from a Python callable.
-pub(crate) struct Called {
+pub(crate) struct CallableMotion {
     pose: Py<PyAny>,
     name: String,
     raised: Mutex<Option<PyErr>>,
 }
 
-impl Called {
+impl CallableMotion {
     /// Returns true if the callable has raised an exception that is not reported yet.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
@@ -165,13 +165,13 @@ impl Called {
 /// Largest difference of a quaternion's length from 1, which allows rounding to a few digits.
 const UNIT: f64 = 1e-3;
 
-impl fmt::Debug for Called {
+impl fmt::Debug for CallableMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Called").field("name", &self.name).finish_non_exhaustive()
     }
 }
 
-impl Moving for Called {
+impl Moving for CallableMotion {
     /// Returns the pose from the callable. After an exception, the head stands still until the run ends.
     fn pose(&self, t_ps: u64) -> Pose {
         if self.has_raised() {
@@ -192,7 +192,7 @@ impl Moving for Called {
     }
 }
 
-/// Number of instants whose poses identify a callable. They are an eighth of a second apart.
+/// Number of instants, an eighth of a second apart, whose poses identify a callable.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 

@@ -209,8 +209,9 @@ impl Outcome {
         both.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Returns the pixel memory of a renderer at the end of the run. The array has shape (208, 128, 128) by bit, row and
-    /// column, with values 0 or 1. Returns None without pixels, and for a renderer that has no pixels. The array is a copy.
+    /// Returns the pixel memory of a renderer at the end of the run. The array has shape (208, 128, 128) by bit, row
+    /// and column, with values 0 or 1. Returns None without pixels, and for a renderer that has no pixels. The array is
+    /// a copy.
     fn pixel_memory<'py>(&self, py: Python<'py>, renderer: usize) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
         let renderers = self.run(py)?.0.record().renderers();
         let count = renderers.len();

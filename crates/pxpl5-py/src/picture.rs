@@ -57,7 +57,7 @@ impl Picture {
         self.pixels.bind(py).clone()
     }
 
-    /// Returns the pixels for ``numpy.asarray``. They are copied only for another type or if ``copy`` is true.
+    /// Returns the pixels for ``numpy.asarray``. The pixels are copied only for another type or if ``copy`` is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,

@@ -7,12 +7,13 @@
 
 use crate::errors::wrong_setting;
 use pxpl5::firmware::{
-    Body, CopyContent, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Pass, Picture,
-    PictureNumber, Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport,
-    region_messages, swap_request,
+    Body, CopyContent, CopyOrder, CopyPath, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Pass,
+    Picture, PictureNumber, Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber,
+    Viewport, region_messages, swap_request,
 };
 use pxpl5::{
-    ConfigError, Fingerprint, KeyValue, Machine, PictureEnd, PictureTimes, Pipeline, Ports, Record, Setup, Span, Time,
+    ConfigError, Fingerprint, KeyValue, Machine, PictureResult, PictureTimes, Pipeline, Ports, Record, Setup, Span,
+    Time,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -179,7 +180,7 @@ fn envelope(
     let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
     let acknowledge = Some(gp.node());
     let copy =
-        CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge, content: CopyContent::Colour };
+        CopyOrder { target, context: 0, way: CopyPath::ThroughBacking, acknowledge, content: CopyContent::Colour };
     RegionEnvelope { begin: true, shade: true, copy: Some(copy) }
 }
 
@@ -227,7 +228,7 @@ impl Pipeline for PolicyPipeline {
             transform_at: mark.time,
             copied_at: None,
             shown_at: record.tick(tick),
-            end: PictureEnd::Shown,
+            end: PictureResult::Shown,
         });
         times.filter(|times| times.shown_at < end).collect()
     }

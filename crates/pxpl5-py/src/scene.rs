@@ -101,7 +101,7 @@ impl Scene {
             spheres,
             structures: Vec::new(),
             lighting: Lighting::over_the_shoulder(),
-            motion: HeadMotion::seeing_whole(centre, f64::from(radius.max(f32::MIN_POSITIVE))),
+            motion: HeadMotion::always_visible(centre, f64::from(radius.max(f32::MIN_POSITIVE))),
             path: Vec::new(),
         };
         scene::Scene::new(parts).map(Self::of).map_err(wrong_setting)

@@ -5,7 +5,7 @@ use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Settings by path, like an experiment file. They are checked together only when an experiment is created.
+/// Settings by path, like an experiment file. The settings are checked together only when an experiment is created.
 #[pyclass(skip_from_py_object, module = "pxpl5._native")]
 #[derive(Clone)]
 pub(crate) struct Settings {

@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// A column of a table: name, description and values.
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the values with their unit. It becomes the field's metadata `about`.
+    /// Description of the values with their unit, which becomes the metadata `about` of the Arrow field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }

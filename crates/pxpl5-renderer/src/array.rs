@@ -29,7 +29,7 @@ pub trait PixelArray {
     /// [`Self::execute`], but Enable may differ. `room` is scratch memory for words.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
-        commands.append_touching(room);
+        commands.append_visible(room);
         self.execute(room).map_or_else(|_| Vec::new(), |executed| executed.outputs)
     }
 

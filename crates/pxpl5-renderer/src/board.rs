@@ -2,14 +2,14 @@
 
 use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
-use crate::fifo::{EqualCommands, InputFifo, Progress};
+use crate::fifo::{CommandBatch, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
-use crate::look::{RendererLook, SentLists};
+use crate::look::{RendererSnapshot, SentLists};
 use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CopyOrder, CopyTarget, CopyWay,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CopyOrder, CopyPath, CopyTarget,
     MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
@@ -65,9 +65,9 @@ pub struct RendererStats {
     pub illegal_commands: u64,
 }
 
-/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as [`PixelJob`]s.
+/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as pixel jobs.
 ///
-/// A [`PixelJob`] computes its pixels only when they are read.
+/// A pixel job computes its pixels only when they are read.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -76,7 +76,7 @@ pub struct Renderer {
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
     /// True if regions without primitives are cached and commands that touch no pixel are left out.
-    saves_regions: bool,
+    caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer in progress.
@@ -136,7 +136,7 @@ impl Renderer {
             cycle,
             fifo,
             pool,
-            saves_regions: true,
+            caches_empty_regions: true,
             logs,
             copies: VecDeque::new(),
             copying: None,
@@ -165,7 +165,7 @@ impl Renderer {
             // Words of no known command still occupy the FIFO; the controller discards them.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
-                self.fifo.take(EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
+                self.fifo.take(CommandBatch { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
             }
         }
         let progress = self.fifo.message(begins);
@@ -179,7 +179,7 @@ impl Renderer {
         if let Some(sent) = &mut self.sent {
             let started = self.fifo.passed(now).map_or(0, |passed| passed.started);
             sent.add(message, first_word, started);
-            self.fifo.forget_before(now);
+            self.fifo.discard_before(now);
         }
     }
 
@@ -204,7 +204,7 @@ impl Renderer {
         }
         for order in &list.copies {
             let image = self.image(order);
-            let is_released = order.way != CopyWay::IntoBacking;
+            let is_released = order.way != CopyPath::IntoBacking;
             self.copies.push_back(PendingCopy { order: *order, image, is_released });
         }
         for run in &list.runs {
@@ -213,7 +213,7 @@ impl Renderer {
         }
     }
 
-    fn work(&mut self, run: &CommandRun) -> EqualCommands {
+    fn work(&mut self, run: &CommandRun) -> CommandBatch {
         self.stats.commands += u64::from(run.count);
         let span_each = match CommandKind::from_opcode(run.opcode) {
             Some(kind) => self.timing.span(kind),
@@ -222,7 +222,7 @@ impl Renderer {
                 Some(Span::ZERO)
             }
         };
-        EqualCommands { words_each: run.words_each, count: run.count, span_each }
+        CommandBatch { words_each: run.words_each, count: run.count, span_each }
     }
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
@@ -236,7 +236,7 @@ impl Renderer {
             pool: Arc::clone(&self.pool),
             lists,
             cleared,
-            saves: self.saves_regions,
+            saves: self.caches_empty_regions,
             target: order.target,
             // Copy commands execute in the order in which their lists arrived.
             content: order.content,
@@ -252,9 +252,9 @@ impl Renderer {
             return self.report(progress, context);
         };
         match copy.order.way {
-            CopyWay::FromPixelMemory => self.transfer(&copy, context),
-            CopyWay::FromBacking => self.release(copy.order.target, context),
-            CopyWay::ThroughBacking | CopyWay::IntoBacking => {
+            CopyPath::FromPixelMemory => self.transfer(&copy, context),
+            CopyPath::FromBacking => self.release(copy.order.target, context),
+            CopyPath::ThroughBacking | CopyPath::IntoBacking => {
                 self.unstored.push_back(copy);
                 self.store_next(context);
             }
@@ -344,7 +344,7 @@ impl Renderer {
             let message = Message { source: self.node, destination, words: COPY_ACKNOWLEDGEMENT_WORDS, body };
             context.output(context.now() + self.cycle, RendererOutput::Send { message, ticket: false, hold: false });
         }
-        if order.way == CopyWay::FromPixelMemory {
+        if order.way == CopyPath::FromPixelMemory {
             let progress = self.fifo.resume(context.now());
             self.report(progress, context);
         }
@@ -384,7 +384,7 @@ impl Renderer {
 
     /// Turns off two optimizations: from now on all lists of a region are drawn, and no region is cached.
     pub const fn draw_every_region(&mut self) {
-        self.saves_regions = false;
+        self.caches_empty_regions = false;
     }
 
     /// Starts to record when words enter and leave the FIFO.
@@ -395,9 +395,9 @@ impl Renderer {
 
     /// Returns a snapshot of the board at `now`, which must not be before the last event.
     #[must_use]
-    pub fn look(&self, now: Time) -> RendererLook {
+    pub fn look(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
-        RendererLook {
+        RendererSnapshot {
             fifo_words: passed.map(|passed| (passed.entered - passed.started) as u32),
             fifo_depth_words: self.timing.fifo_words as u32,
             stands_at_copy: self.fifo.is_blocked(),

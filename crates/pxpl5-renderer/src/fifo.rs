@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 
 /// Some equal commands in a row, as the FIFO counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct EqualCommands {
+pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
     /// Execution time of one command; `None` for a blocking command.
@@ -76,9 +76,9 @@ impl Departure {
 
 /// Start times of commands, as far as future arrivals need them.
 #[derive(Debug, Default)]
-struct Departures(VecDeque<Departure>);
+struct StartTimes(VecDeque<Departure>);
 
-impl Departures {
+impl StartTimes {
     /// Returns the time at which the words from `first` to `last` have all entered, no earlier than `soonest`.
     ///
     /// Each word waits for room. The words after it also wait for their own time on the channel. `first` must not
@@ -86,7 +86,7 @@ impl Departures {
     /// not shorter than the words' time.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
-        self.forget_before(first);
+        self.discard_before(first);
         let mut complete = soonest;
         for room in &self.0 {
             if room.made_room_for > last {
@@ -100,7 +100,7 @@ impl Departures {
 
     /// Drops entries that only words before `first` waited for.
     #[inline]
-    fn forget_before(&mut self, first: u64) {
+    fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
             self.0.pop_front();
         }
@@ -116,11 +116,11 @@ pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
     /// Commands of the message in transit whose words have no arrival time yet.
-    in_transit: VecDeque<EqualCommands>,
+    in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
     words_in: u64,
-    left: Departures,
+    left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
     /// Time at which the controller is free; `None` while a blocking command runs.
@@ -139,7 +139,7 @@ struct Watched {
     left: Course,
 }
 
-/// A growing sum over time, from the last call of `forget_before` on.
+/// A growing sum over time, from the last call of `discard_before` on.
 #[derive(Debug, Default)]
 struct Course {
     /// Value of the sum from each instant on, in order of time.
@@ -160,7 +160,7 @@ impl Course {
         steps.checked_sub(1).map_or(self.before, |last| self.steps[last].1)
     }
 
-    fn forget_before(&mut self, now: Time) {
+    fn discard_before(&mut self, now: Time) {
         self.before = self.at(now);
         let gone = self.steps.partition_point(|step| step.0 <= now);
         self.steps.drain(..gone);
@@ -185,7 +185,7 @@ impl InputFifo {
             transit_known: true,
             last_word_at: Time::ZERO,
             words_in: 0,
-            left: Departures::default(),
+            left: StartTimes::default(),
             words_left: 0,
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
@@ -195,7 +195,7 @@ impl InputFifo {
     }
 
     /// Adds commands, in order, to the message that [`Self::message`] announces next.
-    pub(crate) fn take(&mut self, work: EqualCommands) {
+    pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
 
@@ -231,10 +231,10 @@ impl InputFifo {
     }
 
     /// Drops the record of all times before `now`.
-    pub(crate) fn forget_before(&mut self, now: Time) {
+    pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
-            entered.forget_before(now);
-            left.forget_before(now);
+            entered.discard_before(now);
+            left.discard_before(now);
         }
     }
 
@@ -265,7 +265,7 @@ impl InputFifo {
             // Otherwise words may have to wait, so each command is computed alone.
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
-                    self.in_transit.push_front(EqualCommands { count: work.count - entered, ..work });
+                    self.in_transit.push_front(CommandBatch { count: work.count - entered, ..work });
                     return progress;
                 };
                 self.words_in += u64::from(words);
@@ -291,7 +291,7 @@ impl InputFifo {
     /// The FIFO is not watched. Each command fits in the FIFO, takes at least as long as its words on the channel, and
     /// does not block. So each command after the first starts when the one before it ends. Its last word has arrived by
     /// then: its first word got room at the latest when the command before it started.
-    fn run_freely(&mut self, work: EqualCommands, free_at: Time, span: Span) {
+    fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
@@ -380,14 +380,14 @@ mod tests {
     const WORD: Span = Span(50_000);
 
     /// Reference model of the rules: one word at a time.
-    struct LiteralFifo {
+    struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,
         last_word_at: Time,
         free_at: Time,
     }
 
-    impl LiteralFifo {
+    impl ReferenceFifo {
         fn message(&mut self, begins: Time, commands: &[(u32, u64)]) -> (Time, Vec<Time>) {
             self.last_word_at = self.last_word_at.max(begins);
             let mut starts = Vec::new();
@@ -408,13 +408,13 @@ mod tests {
         }
     }
 
-    fn message(fifo: &mut InputFifo, begins: Time, work: impl IntoIterator<Item = EqualCommands>) -> Progress {
+    fn message(fifo: &mut InputFifo, begins: Time, work: impl IntoIterator<Item = CommandBatch>) -> Progress {
         work.into_iter().for_each(|work| fifo.take(work));
         fifo.message(begins)
     }
 
-    fn work(runs: &[(u32, u64, u32)]) -> Vec<EqualCommands> {
-        let run = |(words_each, ns, count): &(u32, u64, u32)| EqualCommands {
+    fn work(runs: &[(u32, u64, u32)]) -> Vec<CommandBatch> {
+        let run = |(words_each, ns, count): &(u32, u64, u32)| CommandBatch {
             words_each: *words_each,
             count: *count,
             span_each: Some(Span::from_ns(*ns)),
@@ -430,7 +430,7 @@ mod tests {
                 (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000, 1u32..25), 1..9)), 1..12)
         ) {
             let mut fifo = InputFifo::new(depth, WORD);
-            let mut literal = LiteralFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
+            let mut literal = ReferenceFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
             let mut begins = Time::ZERO;
             for (gap_ns, runs) in messages {
                 begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
@@ -446,8 +446,8 @@ mod tests {
         fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
             let mut runs = InputFifo::new(448, WORD);
             let mut singles = InputFifo::new(448, WORD);
-            let run = EqualCommands { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
-            let single = EqualCommands { count: 1, ..run };
+            let run = CommandBatch { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
+            let single = CommandBatch { count: 1, ..run };
             let a = message(&mut runs, Time(7), [run]);
             let b = message(&mut singles, Time(7), vec![single; count as usize]);
             prop_assert_eq!(a, b);
@@ -457,12 +457,12 @@ mod tests {
     #[test]
     fn behind_a_copy_words_enter_until_the_fifo_is_full_and_no_further() {
         let mut fifo = InputFifo::new(100, WORD);
-        let copy = EqualCommands { words_each: 10, count: 1, span_each: None };
-        let triangle = EqualCommands { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
+        let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
+        let triangle = CommandBatch { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
         let first = message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(first, Progress { accepted: Some(Time(500_000)), blocks: Some(Time(500_000)) });
         // The copy's words left when it started, so three triangles (90 words) enter.
-        let second = message(&mut fifo, Time(500_000), [EqualCommands { count: 3, ..triangle }]);
+        let second = message(&mut fifo, Time(500_000), [CommandBatch { count: 3, ..triangle }]);
         assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
         // Twenty words of the next triangle have no room before the copy ends.
         assert_eq!(message(&mut fifo, Time(5_000_000), [triangle]).accepted, None);
@@ -473,8 +473,8 @@ mod tests {
     #[test]
     fn of_a_clump_behind_a_copy_what_has_no_room_comes_in_behind_it() {
         let mut fifo = InputFifo::new(100, WORD);
-        let copy = EqualCommands { words_each: 10, count: 1, span_each: None };
-        let clump = EqualCommands { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
+        let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
+        let clump = CommandBatch { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
         message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(message(&mut fifo, Time(500_000), [clump]).accepted, None);
         // Of 150 words 100 have room. The first triangle makes room for 30 more when the copy ends, and the second for
@@ -487,8 +487,8 @@ mod tests {
 
     #[test]
     fn a_run_of_no_commands_is_none() {
-        let run = |count, ns| EqualCommands { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
-        let accepted = |runs: &[EqualCommands]| {
+        let run = |count, ns| CommandBatch { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
+        let accepted = |runs: &[CommandBatch]| {
             let mut fifo = InputFifo::new(100, WORD);
             (message(&mut fifo, Time::ZERO, runs.to_vec()).accepted, fifo.free_at)
         };
@@ -502,7 +502,7 @@ mod tests {
         // waits for the command that holds word k - 448, so the last word (869) waits for the start of command
         // floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us; it is word 15 of those that wait for it (421 - 406).
         let mut fifo = InputFifo::new(448, WORD);
-        let clump = EqualCommands { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
+        let clump = CommandBatch { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
         let accepted = message(&mut fifo, Time::ZERO, [clump]).accepted;
         assert_eq!(accepted, Some(Time(1_450_000 + 14 * 6_675_000 + 16 * 50_000)));
     }

@@ -102,7 +102,7 @@ impl PixelJob {
             let mut lists = self.lists.iter();
             // Collect words up to the first list that draws a primitive.
             if self.saves
-                && !lists.any(|list| list.append_touching(words))
+                && !lists.any(|list| list.append_visible(words))
                 && let Some(region) = self.as_empty_region(words)
             {
                 return self.pool.empty_region(region, || self.draw(array, words, lists));
@@ -215,7 +215,7 @@ mod tests {
             out.extend_from_slice(&self.0);
         }
 
-        fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+        fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
             self.append_words(part, out.words());
             false
         }

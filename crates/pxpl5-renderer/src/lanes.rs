@@ -167,7 +167,7 @@ impl PixelArray for Lanes {
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         let mut drawing = Drawing { array: self, words: room, outputs: Ok(Vec::new()) };
-        commands.append_touching(&mut drawing);
+        commands.append_visible(&mut drawing);
         drawing.execute();
         drawing.outputs.unwrap_or_default()
     }
@@ -331,7 +331,7 @@ mod tests {
             self.append(self.triangle(3), out);
         }
 
-        fn append_touching(&self, _: u32, out: &mut dyn CommandSink) -> bool {
+        fn append_visible(&self, _: u32, out: &mut dyn CommandSink) -> bool {
             self.begin(out.words());
             let batch = TriangleBatch { len: LANES, edges: &self.edges, planes: &self.planes, colours: self.colours };
             assert!(out.triangles(&batch), "the layout has such triangles");

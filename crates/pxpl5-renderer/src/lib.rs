@@ -76,6 +76,6 @@ pub use contents::MAX_CONTEXTS;
 pub use job::ArrayPool;
 pub use lanes::Lanes;
 pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
-pub use look::RendererLook;
+pub use look::RendererSnapshot;
 pub use simd::Vectors;
 pub use timing::RendererTiming;

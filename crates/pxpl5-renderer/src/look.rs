@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RendererLook {
+pub struct RendererSnapshot {
     /// Words of complete commands that wait in the input FIFO; `None` if the FIFO is not watched.
     pub fifo_words: Option<u32>,
     /// Capacity of the FIFO in words.

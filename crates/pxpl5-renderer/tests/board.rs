@@ -5,7 +5,7 @@ mod support;
 
 use pxpl5_renderer::{CommandKind, RendererStats, RendererTiming};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, CommandRun, CopyContent, CopyWay};
+use pxpl5_wire::{Body, CommandRun, CopyContent, CopyPath};
 use support::{Bench, CYCLE, DISPLAY, HOST, NODE, WORD, list, order, run};
 
 const BEGIN: Time = Time(1_000_000_000);
@@ -42,7 +42,7 @@ fn a_region_leaves_in_whole_messages_of_which_the_last_one_is_told_back() {
     // The region has 100 x 100 pixels.
     for (content, words, parts) in [(CopyContent::Colour, 10_000, 10), (CopyContent::ColourAndDepth, 20_000, 20)] {
         let mut bench = Bench::new();
-        let order = order(1, CopyWay::FromPixelMemory, content);
+        let order = order(1, CopyPath::FromPixelMemory, content);
         bench.announce(BEGIN, list(&[run(CommandKind::CopyRegion, 1)], &[order]));
         bench.run();
         let sent = bench.sent();
@@ -64,7 +64,7 @@ fn a_region_leaves_in_whole_messages_of_which_the_last_one_is_told_back() {
 #[test]
 fn whoever_asked_is_told_when_the_last_pixel_has_come() {
     let mut bench = Bench::new();
-    let order = order(1, CopyWay::FromPixelMemory, CopyContent::Colour);
+    let order = order(1, CopyPath::FromPixelMemory, CopyContent::Colour);
     bench.announce(BEGIN, list(&[run(CommandKind::CopyRegion, 1)], &[order]));
     let sent_at = BEGIN + Span::from_us(600);
     bench.delivered(sent_at);
@@ -82,7 +82,7 @@ fn whoever_asked_is_told_when_the_last_pixel_has_come() {
 fn what_stands_behind_a_copy_from_pixel_memory_waits_for_its_last_pixel() {
     let mut bench = Bench::new();
     let copy = run(CommandKind::CopyRegion, 1);
-    let orders = [1, 2].map(|region| order(region, CopyWay::FromPixelMemory, CopyContent::Colour));
+    let orders = [1, 2].map(|region| order(region, CopyPath::FromPixelMemory, CopyContent::Colour));
     bench.announce(BEGIN, list(&[copy, run(CommandKind::Triangle, 1), copy], &orders));
     let sent_at = BEGIN + Span::from_us(600);
     bench.run();
@@ -113,7 +113,7 @@ fn a_region_in_the_backing_store_leaves_beside_the_commands_that_follow() {
     for (content, blocks) in [(CopyContent::Colour, 1), (CopyContent::ColourAndDepth, 2)] {
         let mut bench = Bench::new();
         let copy = run(CommandKind::CopyRegion, 1);
-        let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, content));
+        let orders = [1, 2].map(|region| order(region, CopyPath::ThroughBacking, content));
         bench.announce(BEGIN, list(&[copy, run(CommandKind::Triangle, 1), copy], &orders));
         let stored = BEGIN + COPY_WORDS + BLOCK * blocks;
         bench.run_until(Time(stored.0 - 1));
@@ -139,7 +139,7 @@ fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
     {
         let timing = RendererTiming { backing_bits: 32 * places, ..RendererTiming::PAPERS };
         let mut bench = Bench::with(timing);
-        let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, content));
+        let orders = [1, 2].map(|region| order(region, CopyPath::ThroughBacking, content));
         bench.announce(BEGIN, list(&[run(CommandKind::CopyRegion, 2)], &orders));
         let sent_at = BEGIN + Span::from_us(900);
         bench.delivered(sent_at);
@@ -153,9 +153,9 @@ fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
 #[test]
 fn a_region_that_is_kept_leaves_when_a_command_asks_for_it_and_once() {
     let mut bench = Bench::new();
-    let kept = order(1, CopyWay::IntoBacking, CopyContent::Colour);
-    let asked = order(1, CopyWay::FromBacking, CopyContent::Colour);
-    let other = order(2, CopyWay::FromBacking, CopyContent::Colour);
+    let kept = order(1, CopyPath::IntoBacking, CopyContent::Colour);
+    let asked = order(1, CopyPath::FromBacking, CopyContent::Colour);
+    let other = order(2, CopyPath::FromBacking, CopyContent::Colour);
     let copy = run(CommandKind::CopyRegion, 1);
     bench.announce(BEGIN, list(&[copy], &[kept]));
     bench.announce(BEGIN + Span::from_us(400), list(&[copy], &[other]));

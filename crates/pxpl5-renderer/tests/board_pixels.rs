@@ -4,7 +4,7 @@ mod support;
 
 use pxpl5_renderer::{Clear, Command, CommandKind, Lanes, PixelArray, SelectRegion, TriangleCommand};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, Linear, Word};
+use pxpl5_wire::{Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, Linear, Word};
 use std::sync::Arc;
 use support::{Bench, WORD, list, list_of, order, run};
 
@@ -43,7 +43,7 @@ fn a_region_is_copied_as_it_was_when_its_copy_was_sent() {
         if !saves {
             bench.device.draw_every_region();
         }
-        let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+        let orders = [1, 2].map(|region| order(region, CopyPath::ThroughBacking, CopyContent::Colour));
         let colours = [0x10_20_30, 0x40_50_60];
         bench.announce(BEGIN, painted(colours[0], orders[0]));
         bench.announce(BEGIN + Span::from_us(1), painted(colours[1], orders[1]));
@@ -61,7 +61,7 @@ fn a_region_is_copied_as_it_was_when_its_copy_was_sent() {
 #[test]
 fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_nothing_was_drawn() {
     let mut bench = Bench::new();
-    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    let order = order(1, CopyPath::ThroughBacking, CopyContent::ColourAndDepth);
     bench.announce(BEGIN, painted(0x10_20_30, order));
     bench.run();
     let image = &images(&bench)[0];
@@ -76,7 +76,7 @@ fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
     let inside = Linear::constant(1);
     let depth = Linear::constant(0x1234_5678);
     let triangle = Command::Triangle(TriangleCommand { edges: [inside; 3], depth, colour: [Linear::constant(0); 3] });
-    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    let order = order(1, CopyPath::ThroughBacking, CopyContent::ColourAndDepth);
     let mut bench = Bench::new();
     bench.announce(BEGIN, list_of(&[select(0), clear(0x10_20_30), triangle, copy(order.target)], &[order]));
     bench.run();
@@ -91,7 +91,7 @@ fn what_comes_behind_a_copy_is_not_in_it() {
         if !saves {
             bench.device.draw_every_region();
         }
-        let orders = [1, 0].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+        let orders = [1, 0].map(|region| order(region, CopyPath::ThroughBacking, CopyContent::Colour));
         let [first, second] = orders.map(|order| copy(order.target));
         let commands = [select(0), clear(0x10_20_30), first, clear(0x40_50_60), second, clear(0x70_80_90)];
         bench.announce(BEGIN, list_of(&commands, &orders));
@@ -105,7 +105,7 @@ fn what_comes_behind_a_copy_is_not_in_it() {
 #[test]
 fn a_region_of_which_no_words_were_sent_is_black() {
     let mut bench = Bench::new();
-    let order = order(1, CopyWay::ThroughBacking, CopyContent::ColourAndDepth);
+    let order = order(1, CopyPath::ThroughBacking, CopyContent::ColourAndDepth);
     bench.announce(BEGIN, list(&[run(CommandKind::Clear, 1), run(CommandKind::CopyRegion, 1)], &[order]));
     bench.run();
     assert!(bench.device.pixel_memory().is_none());
@@ -161,7 +161,7 @@ fn whoever_looks_into_the_array_sees_what_has_started() {
 #[test]
 fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
     let mut bench = Bench::new();
-    let orders = [1, 2].map(|region| order(region, CopyWay::ThroughBacking, CopyContent::Colour));
+    let orders = [1, 2].map(|region| order(region, CopyPath::ThroughBacking, CopyContent::Colour));
     bench.announce(BEGIN, painted(0x10_20_30, orders[0]));
     let other = CopyOrder { context: 1, ..orders[1] };
     let list = list_of(&[select(0), Command::WaitBacking, copy(other.target)], &[other]);
@@ -177,7 +177,7 @@ fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
 fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
     for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {
         let mut bench = Bench::new();
-        let order = CopyOrder { context: copied, ..order(1, CopyWay::ThroughBacking, CopyContent::Colour) };
+        let order = CopyOrder { context: copied, ..order(1, CopyPath::ThroughBacking, CopyContent::Colour) };
         let first = CommandList { context: sent, ..list_of(&[select(0), clear(0x10_20_30)], &[]) };
         bench.announce(BEGIN, first);
         bench.announce(BEGIN + Span::from_us(10), list_of(&[select(0), clear(0x40_50_60)], &[]));

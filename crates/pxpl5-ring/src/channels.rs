@@ -8,7 +8,7 @@ const UNKNOWN: Time = Time(u64::MAX);
 
 /// A snapshot of a message on a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OnChannel {
+pub struct ChannelSnapshot {
     /// Number of the channel, from 0.
     pub channel: usize,
     /// Port of the sender.
@@ -90,6 +90,7 @@ impl RingChannels {
     pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
+        // Keep the list sorted, with the earliest end last.
         let earlier = self.due.iter().rev().take_while(|end| end.0 < at).count();
         self.due.insert(self.due.len() - earlier, (at, channel));
     }
@@ -143,7 +144,7 @@ impl RingChannels {
     }
 
     /// Iterates over snapshots of the messages on channels after `now`, by channel.
-    pub(crate) fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
+    pub(crate) fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
         (0..self.flights.len()).filter_map(move |channel| {
             let ends_at = self.end(channel);
             let flight = self.flight(channel).filter(|_| ends_at.is_none_or(|end| end > now))?;
@@ -157,8 +158,8 @@ impl RingChannels {
 }
 
 impl MessageInFlight {
-    const fn on_channel(&self, channel: usize, ends_at: Option<Time>) -> OnChannel {
-        OnChannel {
+    const fn on_channel(&self, channel: usize, ends_at: Option<Time>) -> ChannelSnapshot {
+        ChannelSnapshot {
             channel,
             source: self.source,
             destination: self.destination,

@@ -20,12 +20,12 @@
 //! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source. The messages of a
 //!    region transfer therefore follow each other, and transfers come in order of arrival. (Published for frame
 //!    buffers, TR94; assumed for all receivers, because all boards have the same port.)
-//! 5. An *elastic* receiver accepts every word as it comes: graphics processors, frame buffers, the host. It gets the
-//!    message when the last word has arrived ([`RingOutput::Delivered`]).
+//! 5. An *elastic* receiver accepts every word as it comes: graphics processors, frame buffers, the host. Such a
+//!    receiver gets the message when the last word has arrived ([`RingOutput::Delivered`]).
 //! 6. A receiver with a FIFO that may be full (a renderer) gets an announcement of the message
-//!    ([`RingOutput::Announce`]). It answers with the time at which the last word enters ([`RingEvent::Accept`]). If
-//!    that time is later than the earliest possible one, the difference is a *stall*, during which channel and ports
-//!    stay occupied.
+//!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters
+//!    ([`RingEvent::Accept`]). If that time is later than the earliest possible one, the difference is a *stall*,
+//!    during which channel and ports stay occupied.
 //! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. Full FIFOs therefore never
 //!    block the messages that their boards must send before they can accept more.
 //! 8. No message is dropped. An impossible message (0 words, more than 1,024 words, or a port that does not exist) is
@@ -65,7 +65,7 @@ mod ring;
 mod stats;
 mod timing;
 
-pub use channels::OnChannel;
+pub use channels::ChannelSnapshot;
 pub use port::{Request, RingError, RingEvent, RingOutput};
 pub use ring::Ring;
 pub use stats::{Refusals, RingStats, WaitReason, WaitingMessage};

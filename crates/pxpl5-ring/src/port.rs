@@ -11,9 +11,9 @@ pub enum RingEvent {
     Request(Request),
     /// A receiver with a FIFO answers an announcement with the time at which the last word enters. Phase `Arrive`.
     ///
-    /// A time earlier than `first_word_at + words x word` is impossible. It is counted as a fault, and the earliest
-    /// time is used instead. If the answer comes after the sender could have been free, the sender becomes free at
-    /// once.
+    /// A time earlier than `first_word_at + words x word` is impossible. Such an answer is counted as a fault, and the
+    /// earliest time is used instead. If the answer comes after the sender could have been free, the sender becomes
+    /// free at once.
     Accept {
         /// Port of the receiver.
         destination: NodeId,
@@ -53,7 +53,7 @@ pub enum RingOutput {
     Announce {
         /// Message that is coming.
         message: Message,
-        /// Time at which the first word begins to arrive. It can enter one `word` later.
+        /// Time at which the first word begins to arrive. The word can enter one `word` later.
         first_word_at: Time,
         /// Time of one word.
         word: Span,

@@ -121,6 +121,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         if n_nodes == 0 {
             return Err(RingError::NoNodes);
         }
+        // Check the whole traffic first, so that the steps need no checks.
         let mut nodes = traffic.iter().flat_map(|t| [t.source, t.destination]);
         if let Some(node) = nodes.find(|node| node.0 >= n_nodes) {
             return Err(RingError::NoSuchNode { node, n_nodes });
@@ -179,6 +180,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         for (message, traffic) in self.traffic.iter().enumerate().filter(|(_, t)| t.at == now) {
             let source = usize::from(traffic.source.0);
             let (queue, since) = &mut self.queues[source];
+            // The first message of an empty queue becomes its head now.
             if queue.is_empty() {
                 *since = now;
             }
@@ -189,9 +191,11 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     fn move_words(&mut self, now: Time) {
         for channel in 0..self.channels.len() {
             let Some(mut slots) = self.channels[channel].take() else { continue };
+            // A word moves only at the end of its slot.
             if now.since(slots.slot_began) >= self.timing.word() {
                 self.move_word(&mut slots, now);
             }
+            // Channel and ports are free after the last word and the answer.
             if slots.words_left == 0 && slots.answered_at <= now {
                 self.release(slots.message, now);
             } else {
@@ -203,6 +207,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
+        // The slots of the overhead pass without asking the receiver.
         if slots.overhead_left > 0 {
             slots.overhead_left -= 1;
             slots.slot_began = now;
@@ -265,6 +270,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         self.sending[usize::from(source.0)] += 1;
         self.queues[usize::from(source.0)].1 = now;
         self.receiving[usize::from(destination.0)] = true;
+        // The announcement reaches the receiver one word time after the grant, plus the hops.
         let latency = self.timing.latency(source, destination, self.n_nodes);
         let announced_at = now + self.timing.word() + latency;
         self.channels[channel] = Some(ChannelSlots {

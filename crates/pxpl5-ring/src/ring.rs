@@ -1,6 +1,6 @@
 //! Ports and arbiter of the ring.
 
-use crate::channels::{MessageInFlight, OnChannel, RingChannels};
+use crate::channels::{ChannelSnapshot, MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -121,15 +121,16 @@ impl Ring {
 
     fn arbitrate(&mut self, context: &mut RingContext) {
         let now = context.now();
+        // Arbitrations up to this instant are done.
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
         self.grant_all(now, context);
-        debug_assert!(self.counts_are_right(), "a count differs from what it counts: {self:?}");
+        debug_assert!(self.check_counters(), "a count differs from what it counts: {self:?}");
         self.arbitrate_at_next_end(context);
     }
 
     /// Recomputes every counter of the ring and compares it.
-    fn counts_are_right(&self) -> bool {
+    fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
         let heads_for = |node: usize| self.heads.iter().filter(|head| usize::from(head.destination.0) == node).count();
         let source_limit = self.timing.source_channels;
@@ -169,7 +170,7 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. It is up to date after each event of a ring that is
+    /// Returns the number of occupied channels. The number is up to date after each event of a ring that is
     /// [watched](Ring::watch).
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
@@ -178,8 +179,8 @@ impl Ring {
 
     /// Returns snapshots of the messages on channels at an instant that is not before the last event, by channel. The
     /// ring stays unchanged.
-    pub fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
-        self.channels.on_channels(now)
+    pub fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
+        self.channels.channel_snapshots(now)
     }
 
     /// Returns true if no message is in flight or waits, as of the last grant or [`Ring::settle`].
@@ -258,8 +259,9 @@ impl Ring {
 
     /// Schedules an arbitration at the next end of a message that matters to a waiting head or to a watched ring.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
+        // A source at its limit or a missing channel makes every end matter.
         let any_end = self.watched || self.at_limit > 0;
-        let next = if any_end || self.lacks_channel() {
+        let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()
         } else if self.heads.is_empty() {
             None
@@ -278,7 +280,7 @@ impl Ring {
     }
 
     /// Returns true if a head waits for any channel to become free.
-    fn lacks_channel(&self) -> bool {
+    fn is_channel_missing(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
     }
@@ -294,8 +296,10 @@ impl Ring {
     fn add_head(&mut self, since: Time, source: NodeId) {
         let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
         let head = QueueHead { since, source, destination: first.request.message.destination };
+        // Heads stay sorted by the time as head, then by source.
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
+        // Count the head at its destination, so that the end of a message there grants it.
         let destination = &mut self.destinations[usize::from(head.destination.0)];
         destination.heads += 1;
         self.heads_to_fifos += u32::from(!destination.elastic);
@@ -311,9 +315,10 @@ impl Ring {
     /// Frees channels and ports of all messages that have ended by `now`, and adds them to the sums. The ring also does
     /// this before every grant.
     pub fn settle(&mut self, now: Time) {
-        let lacked_channel = self.lacks_channel();
+        let lacked_channel = self.is_channel_missing();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
+            // Free the destination, and keep it reserved if the message was held.
             destination.release(&flight);
             self.unblocked |= lacked_channel || destination.heads > 0;
             self.to_fifos -= u64::from(!destination.elastic);
@@ -365,6 +370,7 @@ impl Ring {
         let port = &mut self.sources[usize::from(source.0)];
         let Some(QueuedRequest { at, request }) = port.queue.pop_front() else { return };
         port.in_flight += 1;
+        // Account for the time in the queue.
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
@@ -422,10 +428,12 @@ impl Ring {
     /// elastic receiver gets the message after the last.
     fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
+        // The next word slot follows at once.
         if flight.slots_left > 0 {
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
         }
         let elastic = self.is_elastic(flight.destination);
+        // Elastic receivers get the message after its last word, others its announcement after the first slot.
         let message = if flight.slots_left == 0 || !elastic { flight.message.take() } else { None };
         match message {
             Some(message) if elastic => {
@@ -459,10 +467,11 @@ impl Ring {
             return self.refusals.record(now, error);
         };
         // The channel is occupied for a stall too, but never ends before now.
+        // An answer cannot be earlier than the words without a stall.
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
-        tell_sender((flight.source, flight.ticket), accepted.max(now + self.word), context);
+        notify_sender((flight.source, flight.ticket), accepted.max(now + self.word), context);
         self.channels.end_at(channel, end);
         self.arbitrate_at_next_end(context);
         if last_word_at < earliest {
@@ -503,10 +512,10 @@ fn port_name(node: NodeId) -> String {
 /// Outputs the delivery of a message to an elastic receiver, and the answer to its sender.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
-    tell_sender(sender, at, context);
+    notify_sender(sender, at, context);
 }
 
-fn tell_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut RingContext) {
+fn notify_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mut RingContext) {
     if let Some(ticket) = ticket {
         context.output(at, RingOutput::Sent { source, ticket });
     }

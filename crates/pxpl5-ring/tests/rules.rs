@@ -3,7 +3,7 @@
 mod support;
 
 use pxpl5_ring::reference::PlannedMessage;
-use pxpl5_ring::{OnChannel, Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
+use pxpl5_ring::{ChannelSnapshot, Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
 use pxpl5_sim::{Context, Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
 use std::collections::BTreeMap;
@@ -221,9 +221,9 @@ fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
     bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(1, 4, 9, 100)));
     bench.run(|event, context| ring.handle(event, context));
     let (source, destination) = (NodeId(4), NodeId(9));
-    let begun = OnChannel { channel: 0, source, destination, words: 100, granted: us(1), ends_at: None };
-    assert_eq!(ring.on_channels(us(1)).collect::<Vec<_>>(), [begun]);
-    assert_eq!(ring.on_channels(us(900)).collect::<Vec<_>>(), [begun], "nobody knows when it will have room");
+    let begun = ChannelSnapshot { channel: 0, source, destination, words: 100, granted: us(1), ends_at: None };
+    assert_eq!(ring.channel_snapshots(us(1)).collect::<Vec<_>>(), [begun]);
+    assert_eq!(ring.channel_snapshots(us(900)).collect::<Vec<_>>(), [begun], "nobody knows when it will have room");
 
     let end = us(1) + Span::from_ns((16 + 100) * 50);
     let accept = RingEvent::Accept { destination, last_word_at: end + HOP * 5 };
@@ -233,10 +233,12 @@ fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
         ring.handle(event, context);
         // The first event after the answer.
         if seen.is_empty() {
-            seen = [us(2), Time(end.0 - 1), end, us(900)].map(|at| ring.on_channels(at).collect::<Vec<_>>()).to_vec();
+            seen = [us(2), Time(end.0 - 1), end, us(900)]
+                .map(|at| ring.channel_snapshots(at).collect::<Vec<_>>())
+                .to_vec();
         }
     });
-    let answered = vec![OnChannel { ends_at: Some(end), ..begun }];
+    let answered = vec![ChannelSnapshot { ends_at: Some(end), ..begun }];
     assert_eq!(seen, [answered.clone(), answered, Vec::new(), Vec::new()]);
 }
 

@@ -1,6 +1,6 @@
 //! A machine with its programs, and the records of its run.
 
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use pxpl5_machine::Machine;
 use pxpl5_sim::Time;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(crate) struct Assembled {
     pub(crate) machine: Machine,
     pub(crate) head: Option<Arc<HeadViews>>,
-    pub(crate) notes: FaceNotes,
+    pub(crate) notes: RequestedUpdates,
 }
 
 impl Assembled {
@@ -23,9 +23,9 @@ impl Assembled {
     }
 
     /// Discards observations before `instant` and records of the head before `of_head`. No later result needs them.
-    pub(crate) fn forget_before(&mut self, instant: Time, of_head: Time) {
-        self.machine.forget_before(instant);
-        self.head.iter().for_each(|head| head.forget_before(of_head));
+    pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
+        self.machine.discard_before(instant);
+        self.head.iter().for_each(|head| head.discard_before(of_head));
         let record = self.machine.record();
         let of_memories = record.ports().display().iter().enumerate();
         of_memories

@@ -5,7 +5,7 @@ use crate::cut::moves;
 use crate::display_list::{display_list_for, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::level::{Level, with_clocks_of_instructions};
@@ -27,7 +27,7 @@ impl Experiment {
         check_faces(&adapted, self.pipeline.as_ref())?;
         let [red, green, blue] = self.scene.lighting().background;
         let background = u32::from_be_bytes([0, red, green, blue]);
-        adapted.displays.iter_mut().for_each(|display| display.show_behind_all(background));
+        adapted.displays.iter_mut().for_each(|display| display.set_background(background));
         let layout = self.pipeline.layout();
         let config = match self.level {
             Level::Analytic => return Err(ExperimentError::Level),
@@ -45,7 +45,7 @@ impl Experiment {
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
         }
-        self.given_up.iter().for_each(|saving| machine.give_up(*saving));
+        self.given_up.iter().for_each(|saving| machine.disable(*saving));
         if self.pixels == Pixels::All {
             machine.compute_all_pixels(self.host.pixel_worker());
         }
@@ -76,7 +76,7 @@ impl Experiment {
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
         let poses = poses(scene, self.seed);
-        let notes = FaceNotes::default();
+        let notes = RequestedUpdates::default();
         let moving = scene.structures().iter().map(moves).collect();
         let cells = cut.as_ref().map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
         let host = config.host;
@@ -114,7 +114,7 @@ pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<()
     let Some(display) = config.displays.first() else { return Ok(()) };
     let name = display.name();
     let pipeline_name = pipeline.name();
-    match (display.takes_faces(), pipeline.draws_faces().is_some()) {
+    match (display.shows_cube_faces(), pipeline.draws_faces().is_some()) {
         (true, false) => Err(ConfigError::Board(format!(
             "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
         ))),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// A scene with the square cells in which each structure lies.
 #[derive(Clone, Debug)]
-pub struct CutScene {
+pub struct SegmentedScene {
     /// Scene to load in place of the original one.
     pub scene: Arc<Scene>,
     /// Cells of each structure. A segment has one cell. A structure that was not cut has all cells that it touches. A
@@ -17,7 +17,7 @@ pub struct CutScene {
     pub cells: Arc<[Vec<Cell>]>,
 }
 
-impl CutScene {
+impl SegmentedScene {
     /// Cuts structures at the borders of square cells with this side, in metres. A cut through an edge creates one
     /// vertex that all adjacent pieces share, so the pieces meet bit for bit. Its colour and normal are interpolated. A
     /// sphere is not cut and belongs to the cell of its centre. A structure that moves stays whole.
@@ -41,7 +41,7 @@ impl CutScene {
     ///
     /// # Errors
     ///
-    /// As [`CutScene::segmented`].
+    /// As [`SegmentedScene::segmented`].
     pub fn whole(scene: &Arc<Scene>, side_m: f64) -> Result<Self, PriorityError> {
         let cells = scene.structures().iter().map(|structure| cells(scene, structure, side_m));
         Ok(Self { scene: Arc::clone(scene), cells: cells.collect::<Result<Vec<_>, _>>()?.into() })
@@ -140,9 +140,9 @@ impl Pieces {
         self.parts.structures.push(structure);
     }
 
-    fn finish(self) -> Result<CutScene, PriorityError> {
+    fn finish(self) -> Result<SegmentedScene, PriorityError> {
         let scene = Scene::new(self.parts).map_err(|error| PriorityError(format!("segments: {error}")))?;
-        Ok(CutScene { scene: Arc::new(scene), cells: self.cells.into() })
+        Ok(SegmentedScene { scene: Arc::new(scene), cells: self.cells.into() })
     }
 }
 

@@ -10,7 +10,7 @@
 //!
 //! A picture is evaluated when its period ends, so a longer run does not change the result.
 
-use crate::picture_ends::{PictureEnd, PictureEnds};
+use crate::picture_ends::{PictureResult, PictureResults};
 use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
@@ -51,18 +51,18 @@ impl DuePictures {
     /// before. Returns `None` if no complete picture was due.
     #[must_use]
     pub fn count(
-        pictures: impl Iterator<Item = (PeriodNumber, PictureEnd)>,
+        pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
         periods_a_picture: u64,
         reached: PeriodNumber,
     ) -> Option<Self> {
-        let mut ends = PictureEnds::default();
+        let mut ends = PictureResults::default();
         pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
         let window = ResultWindow::of(&ends, Some(periods_a_picture), reached, reached)?;
         Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
     /// Counts the pictures that were due in a window.
-    pub(crate) fn of_ends(ends: &PictureEnds, periods_a_picture: u64, window: &ResultWindow) -> Self {
+    pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
         // Each due picture may be shown in any of the periods since the last due picture.

@@ -34,7 +34,7 @@ pub enum ExperimentError {
         /// Number of pictures that were shown. The first ones are not evaluated.
         pictures: usize,
         /// Approximate number of fields until a picture after the warm-up is shown, by the pipeline's closed form
-        /// ([`crate::Experiment::estimated_by`]). Without a closed form, the number is extrapolated from the run.
+        /// ([`crate::Experiment::with_estimates`]). Without a closed form, the number is extrapolated from the run.
         /// `None` if no picture was shown.
         needed: Option<u64>,
         /// Outcome of the run, with all observations.
@@ -76,7 +76,7 @@ pub enum ExperimentError {
     #[error("{0}")]
     Scene(String),
     /// The observer of the run ended it ([`crate::Experiment::run_stopping`]), or the host did
-    /// ([`crate::Host::is_given_up`]).
+    /// ([`crate::Host::is_stopped`]).
     #[error("{0}")]
     Stopped(String),
     /// The machine failed. The observations until then are kept.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
-use tracking::motion::Shifted;
+use tracking::motion::AdvancedMotion;
 use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
@@ -134,7 +134,7 @@ fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Po
     };
     // Shift the motion by the age of that report, and feed a new predictor.
     let ahead_ps = known.0 - newest;
-    let motion = Shifted { motion: head.motion(), by_ps: ahead_ps };
+    let motion = AdvancedMotion { motion: head.motion(), by_ps: ahead_ps };
     let mut predictor = head.build_predictor();
     let reports = tracker.reports(&motion, head.seed).from(from);
     reports.take_while(|report| report.arrives_ps <= newest).for_each(|report| predictor.observe(&report));

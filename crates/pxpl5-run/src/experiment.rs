@@ -1,6 +1,6 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
@@ -9,10 +9,10 @@ use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
-use crate::rehearsal::Rehearsed;
-use crate::sums::{Settled, Sums};
+use crate::rehearsal::DryRun;
+use crate::sums::{FinalResults, ObserverFactory};
 use pxpl5_display::Aim;
-use pxpl5_machine::{MachineConfig, Parameter, Record, Saving};
+use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -45,7 +45,7 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 /// Returns a warning if an experiment at the cycle level contains work without i860 code. Such work takes the times of
 /// the table (`gp.*`). Returns `None` if all work has code, or if the level is not [`Level::Cycle`].
 #[must_use]
-pub fn times_of_table(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
+pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
     let name = pipeline.name();
     Some(format!(
@@ -66,13 +66,13 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
-    pub(crate) given_up: BTreeSet<Saving>,
+    pub(crate) given_up: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) estimates: Option<Estimates>,
-    pub(crate) sums: Option<Sums>,
-    pub(crate) rehearsed: Option<Arc<Rehearsed>>,
+    pub(crate) sums: Option<ObserverFactory>,
+    pub(crate) rehearsed: Option<Arc<DryRun>>,
 }
 
 /// Functions by which a closed form estimates an experiment, before or after a run.
@@ -172,7 +172,7 @@ impl Experiment {
 
     /// Disables an optimization of the simulator. No simulated time and no pixel changes, but the run takes longer.
     #[must_use]
-    pub fn without(mut self, saving: Saving) -> Self {
+    pub fn without(mut self, saving: Optimization) -> Self {
         self.given_up.insert(saving);
         self
     }
@@ -207,7 +207,7 @@ impl Experiment {
     /// run that is too short can then recommend a number of fields. The message about a scene that is too large can
     /// recommend a number of triangles.
     #[must_use]
-    pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
+    pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
         self
     }
@@ -216,7 +216,7 @@ impl Experiment {
     /// run discards, so an observer must process these records during the run. A run with [`Keep::Everything`] needs no
     /// observer.
     #[must_use]
-    pub const fn summed_by(mut self, sums: Option<Sums>) -> Self {
+    pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
         self
     }
@@ -226,9 +226,9 @@ impl Experiment {
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,
-        notes: &'a FaceNotes,
-    ) -> Settled<'a> {
-        Settled {
+        notes: &'a RequestedUpdates,
+    ) -> FinalResults<'a> {
+        FinalResults {
             pipeline: self.pipeline.as_ref(),
             aim: self.aim(),
             fields: self.fields,
@@ -287,7 +287,10 @@ impl Experiment {
         let [n_gps, n_renderers] = self.config.boards();
         hash.setting("n_gps", n_gps);
         hash.setting("n_renderers", n_renderers);
-        self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
+        self.config
+            .identifying_parameters()
+            .iter()
+            .for_each(|parameter| hash.setting(&parameter.path, parameter.value));
         self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
         // Pipeline, scene and settings of the run.
         hash.setting("pipeline", self.pipeline.name());
@@ -309,17 +312,17 @@ impl Experiment {
     /// [`out_of_range`].
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.suppositions()).cloned();
+        let of_head = self.head.iter().flat_map(|head| head.unsupported_parameters()).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
     /// Returns warnings about parameter values that no source supports ([`out_of_range`]), and about work without code
-    /// at the cycle level ([`times_of_table`]). Problems in the files of the head's motion and of the scene are
+    /// at the cycle level ([`warning_without_code`]). Problems in the files of the head's motion and of the scene are
     /// included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
-        let of_table = times_of_table(self.level, &self.config, self.pipeline.as_ref());
+        let of_table = warning_without_code(self.level, &self.config, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(|head| head.motion().warnings());
         let of_scene = self.scene.warnings().iter().map(|warning| format!("{}: {warning}", self.scene.name()));
         supposed.iter().map(Parameter::warning).chain(of_table).chain(of_head).chain(of_scene).collect()
@@ -356,13 +359,13 @@ impl Experiment {
 
     /// Returns the seed of the sway of the head motion.
     #[must_use]
-    pub const fn seed_of_motion(&self) -> u64 {
+    pub const fn motion_seed(&self) -> u64 {
         self.seed
     }
 
     /// Returns the level of modelling.
     #[must_use]
-    pub const fn level_of_modelling(&self) -> Level {
+    pub const fn modelling_level(&self) -> Level {
         self.level
     }
 

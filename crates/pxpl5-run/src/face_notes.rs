@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A requested update of a display memory.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FaceNote {
+pub struct RequestedUpdate {
     /// Number of the update, counted over all memories.
     pub picture: PictureNumber,
     /// View whose eye the update was drawn from.
@@ -23,18 +23,18 @@ pub struct FaceNote {
 /// Record of the updates of a run, except discarded ones. The record grows while the run goes on. Clones share the same
 /// record.
 #[derive(Clone, Debug, Default)]
-pub struct FaceNotes(Arc<Mutex<Held>>);
+pub struct RequestedUpdates(Arc<Mutex<Held>>);
 
 #[derive(Debug, Default)]
 struct Held {
     /// Number of updates that were requested so far, by memory.
     asked: BTreeMap<usize, u64>,
     /// Kept updates, in order. Each has the number of earlier updates of its memory.
-    notes: Vec<(u64, FaceNote)>,
+    notes: Vec<(u64, RequestedUpdate)>,
 }
 
-impl FaceNotes {
-    pub(crate) fn write(&self, note: FaceNote) {
+impl RequestedUpdates {
+    pub(crate) fn write(&self, note: RequestedUpdate) {
         let Held { asked, notes } = &mut *self.held();
         let asked = asked.entry(note.memory).or_default();
         notes.push((*asked, note));
@@ -43,12 +43,12 @@ impl FaceNotes {
 
     /// Returns all kept updates, in order.
     #[must_use]
-    pub fn all(&self) -> Vec<FaceNote> {
+    pub fn all(&self) -> Vec<RequestedUpdate> {
         self.held().notes.iter().map(|(_, note)| note.clone()).collect()
     }
 
     /// Returns the kept updates of a memory, by the number of earlier updates of that memory.
-    pub(crate) fn of_memory(&self, memory: usize) -> BTreeMap<u64, FaceNote> {
+    pub(crate) fn of_memory(&self, memory: usize) -> BTreeMap<u64, RequestedUpdate> {
         let held = self.held();
         let of_memory = held.notes.iter().filter(|(_, note)| note.memory == memory);
         of_memory.cloned().collect()

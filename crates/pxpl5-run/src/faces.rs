@@ -1,9 +1,9 @@
 //! History of the faces that were drawn around a head, and the latency of head rotation.
 
-use crate::face_notes::{FaceNote, FaceNotes};
-use crate::latched_head::{LatchedHead, ORIENTATION_WORDS, RotationLatency};
+use crate::face_notes::{RequestedUpdate, RequestedUpdates};
+use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
 use crate::outcome::Outcome;
-use crate::sums::Settled;
+use crate::sums::FinalResults;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
@@ -11,9 +11,9 @@ use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
 /// An update that a display memory shows, from a period on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ShownMemory {
+pub struct ShownUpdate {
     /// Update that is shown.
-    pub note: FaceNote,
+    pub note: RequestedUpdate,
     /// First period in which the update is shown.
     pub from: PeriodNumber,
 }
@@ -21,7 +21,7 @@ pub struct ShownMemory {
 /// Updates that each display memory of a run has shown, in order.
 #[derive(Clone, Debug, Default)]
 pub struct FaceHistory {
-    memories: Vec<Vec<ShownMemory>>,
+    memories: Vec<Vec<ShownUpdate>>,
 }
 
 impl FaceHistory {
@@ -35,7 +35,7 @@ impl FaceHistory {
     /// Returns the history from the records of a run that may still be going on. Returns `None` if the display of the
     /// run takes no faces.
     #[must_use]
-    pub fn held(record: &Record, notes: &FaceNotes) -> Option<Self> {
+    pub fn held(record: &Record, notes: &RequestedUpdates) -> Option<Self> {
         let display = display(record)?;
         let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(record, notes, memory, *port));
         Some(Self { memories: memories.collect() })
@@ -43,7 +43,7 @@ impl FaceHistory {
 
     /// Returns the update that each memory shows in a period, from the lowest memory to the highest. Memories that show
     /// nothing are left out.
-    pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownMemory> {
+    pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
     }
 
@@ -55,24 +55,24 @@ impl FaceHistory {
 
     /// Returns what a memory shows in a period; `None` before its first update.
     #[must_use]
-    pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownMemory> {
+    pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownUpdate> {
         let shown = self.memory(memory);
         shown[..shown.partition_point(|shown| shown.from <= period)].last()
     }
 
     /// Returns all updates that a memory has shown, in order.
     #[must_use]
-    pub fn memory(&self, memory: usize) -> &[ShownMemory] {
+    pub fn memory(&self, memory: usize) -> &[ShownUpdate] {
         self.memories.get(memory).map_or(&[], Vec::as_slice)
     }
 }
 
 /// Returns the updates of a memory whose swaps are recorded. A memory shows its updates in order, each from a swap on.
-fn shown(record: &Record, notes: &FaceNotes, memory: usize, port: NodeId) -> Vec<ShownMemory> {
+fn shown(record: &Record, notes: &RequestedUpdates, memory: usize, port: NodeId) -> Vec<ShownUpdate> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
     let shown =
-        swaps.filter_map(|swap| Some(ShownMemory { note: of_memory.get(&swap.number)?.clone(), from: swap.tick }));
+        swaps.filter_map(|swap| Some(ShownUpdate { note: of_memory.get(&swap.number)?.clone(), from: swap.tick }));
     shown.collect()
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
     record.display_of_kind()
 }
 
-impl LatchedHead {
+impl OrientationTiming {
     /// Returns the orientation timing of a run, or `None` if the display of the run takes no faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
@@ -90,7 +90,7 @@ impl LatchedHead {
     /// Returns the orientation timing of a run that may still be going on. Returns `None` if the display of the run
     /// takes no faces.
     #[must_use]
-    pub fn of_run(settled: &Settled<'_>) -> Option<Self> {
+    pub fn of_run(settled: &FinalResults<'_>) -> Option<Self> {
         let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
         Self::before(settled.record.display(), link, settled.aim)
     }
@@ -113,12 +113,12 @@ impl Outcome {
     }
 }
 
-impl Settled<'_> {
+impl FinalResults<'_> {
     /// Returns the rotation latency of the middle pixel of each given field. Fields without a latency are left out. The
     /// fields must be final.
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
-        let Some((latched, head)) = LatchedHead::of_run(self).zip(self.head) else { return Vec::new() };
+        let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };
         let Some(surface) = self.record.display().surfaces().first() else { return Vec::new() };
         let x = surface.width / 2;
         let of_field = |field: PeriodNumber| {

@@ -47,7 +47,7 @@ pub struct Head {
     raster: Raster,
     aim: Aim,
     reports: Option<Arc<[TrackerReport]>>,
-    suppositions: Vec<Parameter>,
+    unsupported_parameters: Vec<Parameter>,
 }
 
 impl fmt::Debug for Head {
@@ -109,7 +109,7 @@ impl Head {
             raster: Raster::Plain,
             aim: Aim::Middle,
             reports: None,
-            suppositions: Vec::new(),
+            unsupported_parameters: Vec::new(),
         })
     }
 
@@ -140,7 +140,7 @@ impl Head {
     /// # Errors
     ///
     /// [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
-    pub fn judged_at(self, metres: f64) -> Result<Self, HeadError> {
+    pub fn evaluated_at(self, metres: f64) -> Result<Self, HeadError> {
         let (low, high) = JUDGED_AT_M;
         if !(low..=high).contains(&metres) {
             let what = "distance at which errors are judged, m";
@@ -166,7 +166,7 @@ impl Head {
     /// Sets the instant of a picture's display time for which its view is predicted, such as the middle or the first
     /// pixel.
     #[must_use]
-    pub const fn aiming(mut self, aim: Aim) -> Self {
+    pub const fn with_aim(mut self, aim: Aim) -> Self {
         self.aim = aim;
         self
     }
@@ -174,15 +174,15 @@ impl Head {
     /// Stores the parameters of the tracker and the predictor whose values no source supports. Reports warn of these
     /// parameters.
     #[must_use]
-    pub fn supposing(self, suppositions: Vec<Parameter>) -> Self {
-        Self { suppositions, ..self }
+    pub fn with_unsupported_parameters(self, unsupported_parameters: Vec<Parameter>) -> Self {
+        Self { unsupported_parameters, ..self }
     }
 
     /// Returns the parameters of the tracker and the predictor whose values no source supports, as set by
-    /// [`Head::supposing`].
+    /// [`Head::with_unsupported_parameters`].
     #[must_use]
-    pub fn suppositions(&self) -> &[Parameter] {
-        &self.suppositions
+    pub fn unsupported_parameters(&self) -> &[Parameter] {
+        &self.unsupported_parameters
     }
 
     /// Replaces the tracker's reports by the given ones. The given reports must be in order of arrival.

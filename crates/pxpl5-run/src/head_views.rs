@@ -2,7 +2,7 @@
 
 use crate::display_list::view;
 use crate::head::Head;
-use crate::rehearsal::Rehearsal;
+use crate::rehearsal::SeenTimes;
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
 use glam::{DQuat, DVec3};
@@ -19,7 +19,7 @@ use tracking::tracker::TrackerReport;
 
 /// A pose that a pipeline requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampled {
+pub struct SampledPose {
     /// Number of the view that the pose is for, as the pipeline counts views.
     pub number: ViewNumber,
     /// Instant up to which arrived reports could be used.
@@ -99,11 +99,11 @@ pub struct HeadViews {
     /// End of the run. Reports that arrive later are ignored.
     until: Time,
     schedule: Mutex<ReportSchedule>,
-    rehearsal: Option<Rehearsal>,
+    rehearsal: Option<SeenTimes>,
     /// Pose of the viewer in the scene at time zero.
     base: Pose,
     start: Pose,
-    state: Mutex<(Follower, Vec<Sampled>)>,
+    state: Mutex<(Follower, Vec<SampledPose>)>,
 }
 
 impl fmt::Debug for HeadViews {
@@ -120,7 +120,7 @@ impl HeadViews {
         scene: &Arc<Scene>,
         (hmd, eyes): (Hmd, usize),
         until: Time,
-        rehearsal: Option<Rehearsal>,
+        rehearsal: Option<SeenTimes>,
     ) -> Self {
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
@@ -177,12 +177,12 @@ impl HeadViews {
 
     /// Discards the records of poses that were requested before an instant, and of reports that were out of date by
     /// then.
-    pub(crate) fn forget_before(&self, instant: Time) {
+    pub(crate) fn discard_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
-        self.schedule().forget_before(instant);
+        self.schedule().discard_before(instant);
     }
 
-    fn state(&self) -> MutexGuard<'_, (Follower, Vec<Sampled>)> {
+    fn state(&self) -> MutexGuard<'_, (Follower, Vec<SampledPose>)> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -200,7 +200,7 @@ impl HeadViews {
         let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
-        sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
+        sampled.push(SampledPose { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
@@ -252,7 +252,7 @@ impl HeadViews {
 
     /// Returns the records of all requested poses that are still kept ([`Keep`](crate::Keep)), sorted by view number.
     #[must_use]
-    pub fn sampled(&self) -> Vec<Sampled> {
+    pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();
         all.sort_by_key(|sampled| sampled.number);
         all

@@ -3,7 +3,7 @@
 use pxpl5_machine::{PixelWorker, SameThread};
 use std::fmt::Debug;
 
-/// Services of the host computer that a simulation uses. They do not affect the trace.
+/// Services of the host computer that a simulation uses. No service affects the trace.
 pub trait Host: Debug + Send + Sync {
     /// Returns the time of the host's clock in seconds, or `None` without a clock. The clock may start at any moment.
     fn seconds(&self) -> Option<f64> {
@@ -12,7 +12,7 @@ pub trait Host: Debug + Send + Sync {
 
     /// Returns true if the result is no longer wanted. Runs, including dry runs, call this method from time to time. If
     /// it returns true, they end with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
-    fn is_given_up(&self) -> bool {
+    fn is_stopped(&self) -> bool {
         false
     }
 

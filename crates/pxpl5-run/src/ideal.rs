@@ -44,7 +44,7 @@ pub(crate) fn ideal_picture(
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
-        None => views(scene, experiment.seed_of_motion(), hmd, eyes).0(ViewNumber::FIRST, time),
+        None => views(scene, experiment.motion_seed(), hmd, eyes).0(ViewNumber::FIRST, time),
     };
     let viewport = Viewport::new(size.grid(), Lines::Frame).ok()?;
     let layout = pipeline.layout();

@@ -11,10 +11,10 @@ pub enum Keep {
     /// Statistics of the whole run, and all observations of its last pictures. Memory, and computing time per field, do
     /// not depend on the length of the run.
     ///
-    /// The streaming observer of [`Experiment::summed_by`](crate::Experiment::summed_by) computes the results for a
+    /// The streaming observer of [`Experiment::observed_by`](crate::Experiment::observed_by) computes the results for a
     /// tracked head. Without an observer, the report marks these results as missing. Two kinds of runs keep everything
     /// nevertheless: a run that records messages, and a run of a pipeline that needs old records
-    /// ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
+    /// ([`Pipeline::can_discard_records`](crate::Pipeline::can_discard_records)).
     Statistics,
     /// Like [`Keep::Statistics`], but also with recorded messages, and without a streaming observer. A page that
     /// displays a run for hours uses this choice. Pixel errors are available for the last pictures only, and traffic

@@ -76,7 +76,7 @@ pub struct Key {
     pub about: &'static str,
     /// Allowed values with their range.
     pub values: KeyValues,
-    /// Machine parameters that the key sets too. They must not be given together with the key.
+    /// Machine parameters that the key sets too. A user must not set both the key and one of these parameters.
     pub sets: &'static [&'static str],
 }
 

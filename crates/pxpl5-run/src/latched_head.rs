@@ -3,16 +3,16 @@
 use crate::head_views::HeadViews;
 use crate::load_schedule::LoadSchedule;
 use address_recalculation::{AddressRecalculationPipeline, Latch, Scan};
-use pxpl5_display::{Aim, Display, LightSpan};
+use pxpl5_display::{Aim, Display, LightTimes};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// Returns the time span in which a field of a scan lights.
-pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightSpan {
+pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
     let light = |x: u32, y: u32| scan.lights(x, y, field).unwrap_or(tick);
-    LightSpan { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
+    LightTimes { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
 }
 
 /// Number of words of an orientation message on the host's connection to the display.
@@ -25,7 +25,7 @@ pub(crate) const ORIENTATION_WORDS: u32 = 9;
 /// gets more orientations than reports. The host then predicts from the newest report, for each line or for as many
 /// parts of a line as its connection to the display can carry.
 #[derive(Clone, Copy, Debug)]
-pub struct LatchedHead {
+pub struct OrientationTiming {
     scan: Scan,
     schedule: Option<LoadSchedule>,
     latch: Latch,
@@ -34,7 +34,7 @@ pub struct LatchedHead {
     aim: Aim,
 }
 
-impl LatchedHead {
+impl OrientationTiming {
     /// Creates the timing for a display. Returns `None` if the display takes no faces. `link` is the transfer time of
     /// an orientation from the host to the register.
     pub(crate) fn before(display: &dyn Display, link: Span, aim: Aim) -> Option<Self> {
@@ -103,7 +103,7 @@ impl LatchedHead {
     /// orientation was predicted for. Before the first report, the host knows the head's start. Returns `None` before
     /// an orientation is loaded.
     #[must_use]
-    pub fn turned_by(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
+    pub fn orientation_of_pixel(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;
         if let Some(schedule) = self.schedule {
             let load = schedule.load_of(x, y, field)?;
@@ -119,7 +119,7 @@ impl LatchedHead {
     #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
-        let (known, _) = self.turned_by(head, x, y, field)?;
+        let (known, _) = self.orientation_of_pixel(head, x, y, field)?;
         // The orientation comes from the newest report that the host knew.
         let report = head.report_by(known)?;
         let measured = head.measured_at(report)?;

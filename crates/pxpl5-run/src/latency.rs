@@ -117,7 +117,7 @@ pub(crate) struct Pair {
 }
 
 /// Surfaces that begin and end a latency: the first surface, the second surface, or from the first to the second.
-pub(crate) const WHOSE: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
+pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
 /// Function that returns the time of the event that ends a surface's latency.
 pub(crate) type End = fn(&Pair, usize) -> Time;

@@ -1,7 +1,7 @@
 //! Schedule of the orientations that a host sends to a display that latches lines or pixels.
 
 use address_recalculation::{Latch, Scan};
-use pxpl5_display::{Aim, LightSpan};
+use pxpl5_display::{Aim, LightTimes};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
@@ -77,7 +77,7 @@ impl LoadSchedule {
         let last_line = (line + self.lines).min(self.height()) - 1;
         let after =
             if number + 1 == self.loads { self.scan.width() } else { self.first_pixel(line, number + 1, field) };
-        let light = LightSpan {
+        let light = LightTimes {
             tick: self.scan.retrace(field),
             first: self.light(self.first_pixel(line, number, field), line, field),
             last: self.light(after.saturating_sub(1), last_line, field),

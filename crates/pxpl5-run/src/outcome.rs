@@ -3,14 +3,14 @@
 use crate::assembled::Assembled;
 use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::statistics::Statistics;
 use crate::summary::Summary;
-use crate::sums::Settled;
+use crate::sums::FinalResults;
 use crate::tally::{Tally, of_picture};
 use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, Record, StageSpan};
@@ -28,7 +28,7 @@ pub struct Outcome {
     experiment: Experiment,
     record: Record,
     head: Option<Arc<HeadViews>>,
-    notes: FaceNotes,
+    notes: RequestedUpdates,
     closed: Closed,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
@@ -62,12 +62,12 @@ impl Outcome {
 
     /// Returns all final results and kept records of the run, for evaluation after the run.
     #[must_use]
-    pub fn settled(&self) -> Settled<'_> {
+    pub fn settled(&self) -> FinalResults<'_> {
         let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
-        Settled { pictures: self.pictures(), window: self.closed.window, ..all }
+        FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
-    /// Returns the result of the streaming observer ([`Experiment::summed_by`]), if the result has the type `T`.
+    /// Returns the result of the streaming observer ([`Experiment::observed_by`]), if the result has the type `T`.
     #[must_use]
     pub fn said<T: 'static>(&self) -> Option<&T> {
         self.closed.said.as_deref()?.downcast_ref()
@@ -76,7 +76,7 @@ impl Outcome {
     /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results that the sums do not
     /// contain then cover only the last periods.
     #[must_use]
-    pub fn has_forgotten(&self) -> bool {
+    pub fn has_discarded_records(&self) -> bool {
         self.observation().forgotten.before > Time::ZERO
     }
 
@@ -190,7 +190,7 @@ impl Outcome {
 
     /// Returns the requested updates of display memories, in order. A pipeline without faces has none.
     #[must_use]
-    pub const fn face_notes(&self) -> &FaceNotes {
+    pub const fn face_notes(&self) -> &RequestedUpdates {
         &self.notes
     }
 

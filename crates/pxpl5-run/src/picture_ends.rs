@@ -8,7 +8,7 @@ pub const WARM_UP_PICTURES: usize = 4;
 
 /// Result of a picture that was begun, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum PictureEnd {
+pub enum PictureResult {
     /// The picture was complete and in time.
     Shown,
     /// The picture was complete before its period ended, but not in time.
@@ -17,7 +17,7 @@ pub enum PictureEnd {
     Incomplete,
 }
 
-impl PictureEnd {
+impl PictureResult {
     /// Returns the result of a picture. `is_whole` is true if the picture was complete when its period ended.
     /// `is_in_time` is true if no part of the picture was late.
     #[must_use]
@@ -32,19 +32,19 @@ impl PictureEnd {
 
 /// Results of the pictures of each period. A period takes one byte, so 10^7 fields take 10 MB.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PictureEnds {
+pub(crate) struct PictureResults {
     /// One code for each period: 0 without a picture, otherwise 1 plus the index of the best result in `ALL`.
     of_periods: Vec<u8>,
     begun: usize,
     steady_from: Option<PeriodNumber>,
 }
 
-impl PictureEnds {
-    const ALL: [PictureEnd; 3] = [PictureEnd::Shown, PictureEnd::Late, PictureEnd::Incomplete];
+impl PictureResults {
+    const ALL: [PictureResult; 3] = [PictureResult::Shown, PictureResult::Late, PictureResult::Incomplete];
 
     /// Records the result of a picture that should be seen in a period. Pictures must be recorded in the order of their
     /// periods.
-    pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureEnd) {
+    pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureResult) {
         self.begun += 1;
         if self.begun > WARM_UP_PICTURES {
             self.steady_from.get_or_insert(period);
@@ -66,7 +66,7 @@ impl PictureEnds {
     }
 
     /// Returns the best result among the pictures of the `every` periods that end with `last`.
-    pub(crate) fn best(&self, last: u64, every: u64) -> Option<PictureEnd> {
+    pub(crate) fn best(&self, last: u64, every: u64) -> Option<PictureResult> {
         let end = (last as usize + 1).min(self.of_periods.len());
         let of_periods = self.of_periods.get((last + 1).saturating_sub(every) as usize..end)?;
         let best = of_periods.iter().copied().filter(|code| *code > 0).min()?;
@@ -82,6 +82,6 @@ impl PictureEnds {
     /// Counts the periods, from `first` to `last`, in which a picture was shown in time.
     pub(crate) fn periods_shown(&self, [first, last]: [PeriodNumber; 2]) -> u64 {
         let periods = first.until(last.next());
-        periods.filter(|period| self.best(period.0, 1) == Some(PictureEnd::Shown)).count() as u64
+        periods.filter(|period| self.best(period.0, 1) == Some(PictureResult::Shown)).count() as u64
     }
 }

@@ -1,15 +1,15 @@
 //! Interface between pipelines and experiments.
 
-use crate::cut::CutScene;
-use crate::face_notes::FaceNotes;
+use crate::cut::SegmentedScene;
+use crate::face_notes::RequestedUpdates;
 use crate::keys::KeyValue;
-use crate::picture_ends::PictureEnd;
+use crate::picture_ends::PictureResult;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 use address_recalculation::Latch;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use priority_rendering::Cell;
-use pxpl5_display::{Aim, LightSpan};
+use pxpl5_display::{Aim, LightTimes};
 use pxpl5_gp::{CodeUse, HostTiming};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
@@ -56,7 +56,7 @@ pub struct Setup {
     /// Cells in which each structure lies. Empty unless the pipeline has cut the scene ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
     /// Record of the updates that a pipeline with faces has requested.
-    pub notes: FaceNotes,
+    pub notes: RequestedUpdates,
     /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel. Only
     /// firmware that knows the display time uses the setting.
     pub aim: Aim,
@@ -87,14 +87,14 @@ pub struct PictureTimes {
     /// represents the picture.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
-    pub end: PictureEnd,
+    pub end: PictureResult,
 }
 
 impl PictureTimes {
     /// Returns true if the picture was complete in time. Other pictures have no latency.
     #[must_use]
     pub fn is_shown(&self) -> bool {
-        self.end == PictureEnd::Shown
+        self.end == PictureResult::Shown
     }
 }
 
@@ -131,7 +131,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     }
 
     /// Returns the latch mode of a pipeline that draws the faces of a cube around the head, for a display that takes
-    /// faces ([`DisplayConfig::takes_faces`](pxpl5_display::DisplayConfig::takes_faces)). The latch mode tells whether
+    /// faces ([`DisplayConfig::shows_cube_faces`](pxpl5_display::DisplayConfig::shows_cube_faces)). The latch mode tells whether
     /// the display latches orientations by field, by line or by pixel. Returns `None` for other pipelines.
     fn draws_faces(&self) -> Option<Latch> {
         None
@@ -143,7 +143,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// # Errors
     ///
     /// [`ConfigError`] for a scene that cannot be cut.
-    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<CutScene>, ConfigError> {
+    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
         Ok(None)
     }
 
@@ -170,9 +170,9 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     }
 
     /// Returns true if [`Pipeline::pictures`] and [`Pipeline::late_regions`] need no old records. After
-    /// [`Machine::forget_before`], both must give the same results for later times. Only then can a long run discard
+    /// [`Machine::discard_before`], both must give the same results for later times. Only then can a long run discard
     /// records.
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         false
     }
 
@@ -229,7 +229,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     }
 
     /// Returns the time span in which a picture is shown: until the next picture replaces it, or until the run ends.
-    fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
+    fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightTimes {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));
         let periods = next.map_or(self.periods_a_picture(record).unwrap_or(1), |next| next.since(first));
@@ -250,11 +250,11 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 }
 
 /// Returns the time span in which the first surface lights, over `periods` periods of the first display, at least one.
-pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightSpan {
+pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightTimes {
     let display = record.display();
     let tick = display.tick(first);
     let last = first.after(periods.max(1) - 1);
-    LightSpan {
+    LightTimes {
         tick,
         first: display.first_light(0, first).unwrap_or(tick),
         last: display.last_light(0, last).unwrap_or_else(|| display.tick(last.next())),

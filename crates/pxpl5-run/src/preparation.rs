@@ -5,9 +5,9 @@ use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
 use crate::keep::Keep;
 use crate::outcome::Outcome;
-use crate::rehearsal::{Rehearsal, Rehearsed};
-use crate::rehearsal_sum::RehearsalSum;
-use crate::sums::{Summing, Sums};
+use crate::rehearsal::{DryRun, SeenTimes};
+use crate::rehearsal_sum::DryRunObserver;
+use crate::sums::{ObserverFactory, StreamingObserver};
 use std::sync::Arc;
 
 /// Number of fields of a dry run for firmware that itself knows when its views are seen. So many fields are enough for
@@ -18,7 +18,7 @@ const INTERVAL_FIELDS: u64 = 60;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
     /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times.
-    pub(crate) rehearsal: Option<Rehearsal>,
+    pub(crate) rehearsal: Option<SeenTimes>,
     /// Head with a tuned predictor. `None` if there is nothing to tune.
     pub(crate) head: Option<Arc<Head>>,
 }
@@ -31,26 +31,26 @@ impl Experiment {
     ///
     /// As [`Experiment::run`].
     pub fn rehearsed(self) -> Result<Self, ExperimentError> {
-        let Some(head) = self.rehearsing_head() else { return Ok(self) };
+        let Some(head) = self.predicting_head() else { return Ok(self) };
         let rehearsed = Some(self.rehearse(head)?);
         Ok(Self { rehearsed, ..self })
     }
 
     /// Returns the result that [`Experiment::rehearsed`] has stored.
     #[must_use]
-    pub const fn rehearsal(&self) -> Option<&Arc<Rehearsed>> {
+    pub const fn rehearsal(&self) -> Option<&Arc<DryRun>> {
         self.rehearsed.as_ref()
     }
 
     /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs in the predictor only.
     #[must_use]
-    pub fn rehearsed_as(self, rehearsed: Option<Arc<Rehearsed>>) -> Self {
+    pub fn with_dry_run(self, rehearsed: Option<Arc<DryRun>>) -> Self {
         Self { rehearsed, ..self }
     }
 
     /// Performs a dry run if the predictor needs its result, and tunes the predictor if required.
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
-        let Some(head) = self.rehearsing_head() else { return Ok(Preparation::default()) };
+        let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
         let known = self.rehearsed.clone().map_or_else(|| self.rehearse(head), Ok)?;
         let tuned = head.is_to_be_tuned().then(|| known.tuned(head)).flatten();
         let rehearsal = (!self.pipeline.knows_when_seen()).then(|| known.rehearsal.clone());
@@ -58,14 +58,14 @@ impl Experiment {
     }
 
     /// Returns the head if it predicts and needs the result of a dry run.
-    fn rehearsing_head(&self) -> Option<&Arc<Head>> {
+    fn predicting_head(&self) -> Option<&Arc<Head>> {
         let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
     }
 
-    fn rehearse(&self, head: &Head) -> Result<Arc<Rehearsed>, ExperimentError> {
+    fn rehearse(&self, head: &Head) -> Result<Arc<DryRun>, ExperimentError> {
         let rehearsed = if self.pipeline.knows_when_seen() {
-            self.short_rehearsal(head)?
+            self.short_dry_run(head)?
         } else {
             self.without_prediction(head, self.fields)?
         };
@@ -74,9 +74,9 @@ impl Experiment {
 
     /// Runs the experiment without prediction. A streaming observer keeps two or three bytes a view, for any length of
     /// the run.
-    fn without_prediction(&self, head: &Head, fields: u64) -> Result<Rehearsed, ExperimentError> {
+    fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
-        let (keep, sums): (Keep, Sums) = (Keep::Statistics, || Box::<RehearsalSum>::default());
+        let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
         // A run with few pictures is also preceded by a dry run with few pictures.
@@ -87,7 +87,7 @@ impl Experiment {
         Ok(outcome.said().cloned().unwrap_or_else(|| rehearsed(&outcome)))
     }
 
-    fn short_rehearsal(&self, head: &Head) -> Result<Rehearsed, ExperimentError> {
+    fn short_dry_run(&self, head: &Head) -> Result<DryRun, ExperimentError> {
         match self.without_prediction(head, self.fields.min(INTERVAL_FIELDS)) {
             Ok(rehearsed) if rehearsed.interval_ps.is_some() => Ok(rehearsed),
             Ok(_) => self.without_prediction(head, self.fields),
@@ -97,8 +97,8 @@ impl Experiment {
 }
 
 /// Computes the result of a dry run that has kept all records.
-fn rehearsed(outcome: &Outcome) -> Rehearsed {
-    let mut sum = RehearsalSum::default();
+fn rehearsed(outcome: &Outcome) -> DryRun {
+    let mut sum = DryRunObserver::default();
     sum.take(&outcome.settled());
     sum.rehearsed()
 }

@@ -7,14 +7,14 @@ use pxpl5_wire::ViewNumber;
 
 /// Instants that views are drawn for, as found by a dry run without prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rehearsal {
+pub struct SeenTimes {
     /// Instant of each view that was shown, by view number.
     aimed_at: Instants,
     /// Mean time from the sample of a view to its instant, in picoseconds.
     mean_lead_ps: u64,
 }
 
-impl Rehearsal {
+impl SeenTimes {
     /// Creates the result from the instants of the views that were shown, and the mean time in picoseconds from a
     /// view's sample to its instant.
     pub(crate) const fn new(aimed_at: Instants, mean_lead_ps: u64) -> Self {
@@ -29,17 +29,17 @@ impl Rehearsal {
     }
 }
 
-/// Results of a dry run that a predictor needs. They are the same for every predictor.
+/// Results of a dry run that a predictor needs. Every predictor gets the same results.
 #[derive(Clone, Debug)]
-pub struct Rehearsed {
+pub struct DryRun {
     /// Instants at which views are seen.
-    pub(crate) rehearsal: Rehearsal,
+    pub(crate) rehearsal: SeenTimes,
     /// Mean interval over which views must be predicted, in picoseconds. `None` if no view was predicted.
     pub(crate) interval_ps: Option<u64>,
     pub(crate) turn_interval_ps: Option<u64>,
 }
 
-impl Rehearsed {
+impl DryRun {
     /// Returns the head with a tuned predictor. Positions are tuned for the interval of pictures. Orientations are
     /// tuned for the interval of latched orientations, if the display latches them. Returns `None` if the dry run found
     /// no interval.

@@ -1,13 +1,13 @@
 //! Streaming observer of a dry run without prediction.
 
-use crate::head_views::{HeadViews, Sampled};
+use crate::head_views::{HeadViews, SampledPose};
 use crate::instants::Instants;
-use crate::latched_head::LatchedHead;
+use crate::latched_head::OrientationTiming;
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
-use crate::rehearsal::{Rehearsal, Rehearsed};
-use crate::sums::{Settled, Summing};
-use pxpl5_display::LightSpan;
+use crate::rehearsal::{DryRun, SeenTimes};
+use crate::sums::{FinalResults, StreamingObserver};
+use pxpl5_display::LightTimes;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
 use std::any::Any;
@@ -20,7 +20,7 @@ const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
 /// latched orientations.
 #[derive(Debug, Default)]
-pub(crate) struct RehearsalSum {
+pub(crate) struct DryRunObserver {
     pictures: usize,
     /// Views that later pictures may show too.
     going_on: BTreeMap<ViewNumber, ShownView>,
@@ -36,7 +36,7 @@ pub(crate) struct RehearsalSum {
 /// Time span in which a view is shown, over all pictures of the view.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
-    shown: LightSpan,
+    shown: LightTimes,
     /// True if a picture of the view was complete and came after the warm-up.
     is_complete: bool,
 }
@@ -67,8 +67,8 @@ impl Mean {
     }
 }
 
-impl Summing for RehearsalSum {
-    fn take(&mut self, settled: &Settled<'_>) {
+impl StreamingObserver for DryRunObserver {
+    fn take(&mut self, settled: &FinalResults<'_>) {
         let Some(head) = settled.head else { return };
         let sampled = head.sampled();
         for (times, next) in self.timed(settled) {
@@ -84,11 +84,11 @@ impl Summing for RehearsalSum {
     }
 }
 
-impl RehearsalSum {
+impl DryRunObserver {
     /// Returns the results so far.
-    pub(crate) fn rehearsed(self) -> Rehearsed {
-        Rehearsed {
-            rehearsal: Rehearsal::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
+    pub(crate) fn rehearsed(self) -> DryRun {
+        DryRun {
+            rehearsal: SeenTimes::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
             interval_ps: self.intervals.rounded_ps(),
             turn_interval_ps: self.turns.rounded_ps(),
         }
@@ -97,7 +97,7 @@ impl RehearsalSum {
     /// Returns the pictures, each with the picture that replaces it. For a display with several memories, only the
     /// first memory is timed, because it holds the structures that must be drawn most often. The last picture of this
     /// memory waits until the picture that replaces it is known.
-    fn timed(&mut self, settled: &Settled<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
+    fn timed(&mut self, settled: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
         // Leave out the updates of all memories except the first.
         let of_others: BTreeSet<PictureNumber> =
@@ -114,7 +114,7 @@ impl RehearsalSum {
         timed.iter().copied().zip(nexts).collect()
     }
 
-    fn take_picture(&mut self, times: &PictureTimes, shown: LightSpan) {
+    fn take_picture(&mut self, times: &PictureTimes, shown: LightTimes) {
         self.pictures += 1;
         let is_complete = times.is_shown() && self.pictures > WARM_UP_PICTURES;
         let view = self.going_on.entry(times.view).or_insert(ShownView { shown, is_complete });
@@ -124,7 +124,7 @@ impl RehearsalSum {
 
     /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
     /// the newest one too.
-    fn end_views(&mut self, settled: &Settled<'_>, sampled: &[Sampled]) {
+    fn end_views(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
         ended.iter().for_each(|(view, shown)| self.end_view(settled, sampled, *view, *shown));
@@ -136,7 +136,7 @@ impl RehearsalSum {
 
     /// Finishes a view. Firmware that itself knows when views are seen needs no instants, and may show views in another
     /// order than that of their numbers.
-    fn end_view(&mut self, settled: &Settled<'_>, sampled: &[Sampled], view: ViewNumber, shown: ShownView) {
+    fn end_view(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = settled.aim.instant(&shown);
         if !settled.pipeline.knows_when_seen() {
@@ -153,9 +153,11 @@ impl RehearsalSum {
 
     /// Adds the prediction interval of the middle pixel of each field: from the measurement of an orientation to the
     /// instant that it was predicted for.
-    fn take_turns(&mut self, settled: &Settled<'_>, head: &HeadViews) {
+    fn take_turns(&mut self, settled: &FinalResults<'_>, head: &HeadViews) {
         let display = settled.record.display();
-        let Some((latched, surface)) = LatchedHead::of_run(settled).zip(display.surfaces().first()) else { return };
+        let Some((latched, surface)) = OrientationTiming::of_run(settled).zip(display.surfaces().first()) else {
+            return;
+        };
         for field in self.turned_to.until(settled.until) {
             let y = surface.height / 2 + FieldParity::of_field(field).first_line();
             let span = turned(&latched, head, [surface.width / 2, y], field);
@@ -166,8 +168,8 @@ impl RehearsalSum {
 }
 
 /// Returns the prediction interval of a pixel's orientation, or `None` before the first report.
-fn turned(latched: &LatchedHead, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
-    let (known, aimed): (Time, Time) = latched.turned_by(head, x, y, field)?;
+fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
+    let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
     let measured = head.measured_at(head.report_by(known)?)?;
     Some(aimed.since(measured))
 }

@@ -1,5 +1,5 @@
-//! Arrival times of a tracker's reports at the host. They do not depend on the reports' contents, so they are known in
-//! advance even for an interactive head.
+//! Arrival times of a tracker's reports at the host. The times do not depend on the reports' contents, so they are
+//! known in advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
@@ -40,7 +40,7 @@ impl ReportSchedule {
 
     /// Returns the first report at an instant or later, or `None` if the run has none.
     pub(crate) fn from(&mut self, instant: Time) -> Option<Coming> {
-        self.know_beyond(instant);
+        self.read_until_after(instant);
         let earlier = self.known.partition_point(|coming| coming.arrives < instant);
         self.known.get(earlier).copied()
     }
@@ -52,14 +52,14 @@ impl ReportSchedule {
 
     /// Returns the last report that had arrived by an instant, or `None` before the first.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
-        self.know_beyond(instant);
+        self.read_until_after(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
     /// Discards reports that no question about this instant or later needs. The last report before the instant stays,
     /// and so do reports that arrived together with it.
-    pub(crate) fn forget_before(&mut self, instant: Time) {
+    pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);
         self.known.drain(..earlier);
@@ -71,7 +71,7 @@ impl ReportSchedule {
     }
 
     /// Computes reports until one arrives after an instant.
-    fn know_beyond(&mut self, instant: Time) {
+    fn read_until_after(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };
             self.known.push_back(coming);
@@ -112,7 +112,7 @@ mod tests {
                 }
                 if i % 5 == 4 {
                     oldest = at;
-                    kept.forget_before(Time(at));
+                    kept.discard_before(Time(at));
                     let old = kept.known.iter().filter(|coming| coming.arrives.0 <= at);
                     prop_assert!(old.map(|coming| coming.arrives).collect::<std::collections::BTreeSet<_>>().len() <= 1);
                 }

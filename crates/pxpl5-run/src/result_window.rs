@@ -8,7 +8,7 @@
 //!
 //! The window ends with the last period that was over, or one period earlier if no picture is ever due.
 
-use crate::picture_ends::{PictureEnd, PictureEnds};
+use crate::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
@@ -41,7 +41,7 @@ impl ResultWindow {
     /// is the first period after the requested length of the run, and defines the first half of the run. Returns `None`
     /// if no period remains after start-up, or if the rest is too short for a due picture.
     pub(crate) fn of(
-        ends: &PictureEnds,
+        ends: &PictureResults,
         every: Option<u64>,
         reached: PeriodNumber,
         planned: PeriodNumber,
@@ -59,7 +59,7 @@ impl ResultWindow {
 
     /// Returns the window of a run that is still going on. All pictures in the periods before `known` must be known.
     /// The window ends with the requested end of the run.
-    pub(crate) fn begun(ends: &PictureEnds, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
+    pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
         // Start-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
@@ -97,10 +97,10 @@ impl ResultWindow {
 
 /// Returns the period in which the first counted picture is due. If a picture that is due between `start` and `end` was
 /// not shown, the first such picture is taken. Otherwise, the first one that is due at or after `steady` is taken.
-fn first_due(ends: &PictureEnds, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
+fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);
     let first = start + (anchor - start) % every;
-    let failed = (first..end).step_by(every as usize).find(|due| ends.best(*due, every) != Some(PictureEnd::Shown));
+    let failed = (first..end).step_by(every as usize).find(|due| ends.best(*due, every) != Some(PictureResult::Shown));
     failed.unwrap_or(first + steady.saturating_sub(first).div_ceil(every) * every)
 }

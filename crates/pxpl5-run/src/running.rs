@@ -92,7 +92,7 @@ impl Experiment {
 
     /// Returns an error if the host no longer wants the result.
     pub(crate) fn go_on(&self) -> Result<(), ExperimentError> {
-        if self.host.is_given_up() {
+        if self.host.is_stopped() {
             return Err(ExperimentError::Stopped("the run was given up".to_owned()));
         }
         Ok(())

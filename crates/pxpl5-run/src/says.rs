@@ -1,7 +1,7 @@
 //! Descriptions of the state of boards in words, for the debugger and the live page.
 
 use crate::stepper::Stepper;
-use pxpl5_gp::{GpLook, Priority, ProgramLook};
+use pxpl5_gp::{GpSnapshot, Priority, ProgramSnapshot};
 use pxpl5_machine::Board;
 use pxpl5_renderer::{FieldRange, PixelArray, Plane};
 use pxpl5_sim::{Span, Time};
@@ -129,7 +129,7 @@ pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
 }
 
 /// Returns a description of a processor's programs and of the messages that wait.
-fn processor_line(look: &GpLook) -> String {
+fn processor_line(look: &GpSnapshot) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {
         return "no program".to_owned();
@@ -144,7 +144,7 @@ fn processor_line(look: &GpLook) -> String {
     parts.join("; ")
 }
 
-fn program(program: &ProgramLook) -> String {
+fn program(program: &ProgramSnapshot) -> String {
     let level = if program.priority == Priority::Interrupt { "interrupt " } else { "" };
     match program.work_left {
         Some(left) => format!("{level}works, {} left", in_us(left)),

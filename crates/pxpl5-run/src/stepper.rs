@@ -11,11 +11,11 @@ use crate::preparation::Preparation;
 use crate::stops::PROGRESS_FIELDS;
 use crate::window::Window;
 use image::RgbImage;
-use pxpl5_gp::{BreakpointHit, GpLook};
-use pxpl5_machine::{Board, DEADLOCK_TICKS, Happening, Machine, Record, RunError};
+use pxpl5_gp::{BreakpointHit, GpSnapshot};
+use pxpl5_machine::{Board, DEADLOCK_TICKS, EventDescription, Machine, Record, RunError};
 use pxpl5_oracle::IdealPicture;
-use pxpl5_renderer::{Lanes, RendererLook};
-use pxpl5_ring::OnChannel;
+use pxpl5_renderer::{Lanes, RendererSnapshot};
+use pxpl5_ring::ChannelSnapshot;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
@@ -45,7 +45,7 @@ pub struct Stepper {
     window: Window,
     begun_s: Option<f64>,
     now: Time,
-    last: Option<Happening>,
+    last: Option<EventDescription>,
     breakpoints: BTreeSet<u32>,
 }
 
@@ -82,17 +82,17 @@ impl Stepper {
                 self.now = error.time();
                 return Pause::Failed(error);
             }
-            self.stand_at(chunk);
+            self.advance_to(chunk);
         }
         self.reached(time)
     }
 
     /// Handles events one after the other until `is_it` returns true for an event. Stops at `limit` at the latest.
-    pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &Happening) -> bool) -> Pause {
+    pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &EventDescription) -> bool) -> Pause {
         let target = limit.min(self.end());
         loop {
             // The next event is read before it is handled, because a handled event cannot be read any more.
-            let next = self.run.machine.next_happening();
+            let next = self.run.machine.next_event_description();
             match self.run.machine.step_before(target) {
                 Err(error) => {
                     self.now = error.time();
@@ -100,7 +100,7 @@ impl Stepper {
                     return Pause::Failed(error);
                 }
                 Ok(None) => {
-                    self.stand_at(self.now.max(target));
+                    self.advance_to(self.now.max(target));
                     return if target < self.end() { Pause::Reached } else { Pause::End };
                 }
                 Ok(Some(time)) => self.now = time,
@@ -140,7 +140,7 @@ impl Stepper {
         self.run_to(self.record().tick(self.period().next()))
     }
 
-    /// Sets the code addresses at which the run stops. They replace all earlier addresses. Only a run at
+    /// Sets the code addresses at which the run stops, in place of all earlier addresses. Only a run at
     /// [`Level::Cycle`](crate::Level::Cycle) executes code and can stop at an address.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.run.machine.break_at(&addresses);
@@ -163,7 +163,7 @@ impl Stepper {
         let host_seconds = self.begun_s.zip(self.experiment.host.seconds()).map(|(begin, end)| end - begin);
         let mut error = self.failure().cloned();
         // With frames on demand, a host without a further report waits for a legitimate reason.
-        if error.is_none() && !self.experiment.on_demand && self.may_be_stuck() {
+        if error.is_none() && !self.experiment.on_demand && self.may_be_deadlocked() {
             error = self.deadlock();
         }
         // The outcome ends at the end of the run, or in the period in which the machine failed.
@@ -210,7 +210,7 @@ impl Stepper {
 
     /// Returns the last event, if the last piece of the run ended with an event.
     #[must_use]
-    pub const fn last(&self) -> Option<Happening> {
+    pub const fn last(&self) -> Option<EventDescription> {
         self.last
     }
 
@@ -245,13 +245,13 @@ impl Stepper {
     /// Returns a snapshot of the host or of a graphics processor. Returns `None` for other boards and for boards that
     /// the machine does not have.
     #[must_use]
-    pub fn processor(&self, board: Board) -> Option<GpLook> {
+    pub fn processor(&self, board: Board) -> Option<GpSnapshot> {
         Some(self.run.machine.board(board)?.look(self.now))
     }
 
     /// Returns a snapshot of a renderer, or `None` if the machine does not have that renderer.
     #[must_use]
-    pub fn renderer(&self, number: usize) -> Option<RendererLook> {
+    pub fn renderer(&self, number: usize) -> Option<RendererSnapshot> {
         Some(self.record().renderers().get(number)?.look(self.now))
     }
 
@@ -264,8 +264,8 @@ impl Stepper {
 
     /// Returns the messages that occupy channels of the ring now.
     #[must_use]
-    pub fn channels(&self) -> Vec<OnChannel> {
-        self.record().ring().on_channels(self.now).collect()
+    pub fn channels(&self) -> Vec<ChannelSnapshot> {
+        self.record().ring().channel_snapshots(self.now).collect()
     }
 
     /// Returns the picture on a surface as the viewer sees it now: the lines that the beam has drawn, above the lines
@@ -276,7 +276,7 @@ impl Stepper {
         for display in self.record().displays() {
             let surfaces = display.surfaces().len();
             if left < surfaces {
-                return display.seen_so_far(left, self.now);
+                return display.picture_so_far(left, self.now);
             }
             left -= surfaces;
         }
@@ -290,7 +290,7 @@ impl Stepper {
     }
 
     /// Sets the present instant and adds all final results to the sums.
-    fn stand_at(&mut self, now: Time) {
+    fn advance_to(&mut self, now: Time) {
         self.now = now;
         self.last = None;
         self.window.look(&self.experiment, &mut self.run, now);
@@ -306,7 +306,7 @@ impl Stepper {
     /// Returns true if a machine at the end of the run may be in a deadlock. A pipeline that waits for a swap is at
     /// rest until the next tick. In a long run, the machine itself detects a deadlock. A deadlock can be undetected
     /// only in a short run, or after idle ticks at the end.
-    fn may_be_stuck(&self) -> bool {
+    fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long
     }
@@ -322,7 +322,7 @@ impl Stepper {
             if let Err(error) = run.machine.run_until(until) {
                 return Some(error).filter(|error| matches!(error, RunError::Deadlock { .. }));
             }
-            run.forget_before(until, until);
+            run.discard_before(until, until);
         }
         None
     }

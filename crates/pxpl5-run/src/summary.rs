@@ -4,7 +4,7 @@ use crate::due::DuePictures;
 use crate::samples::Samples;
 use crate::statistics::Statistics;
 
-/// Results of an experiment that all levels of modelling provide. They cover the pictures in the window of the run.
+/// Results of an experiment that all levels of modelling provide, over the pictures in the window of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Latency of every complete picture, as its pipeline defines latency, in milliseconds.

@@ -1,6 +1,6 @@
 //! Streaming observers: they process the records of a run while it goes on, so that old records can be discarded.
 
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::ResultWindow;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Final results and records of a run that a streaming observer has not received before. After a run that keeps
 /// everything, one value holds the whole run.
 #[derive(Clone, Copy, Debug)]
-pub struct Settled<'a> {
+pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
     /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel.
@@ -26,7 +26,7 @@ pub struct Settled<'a> {
     /// Views of the tracked head that are kept, or `None` without a head.
     pub head: Option<&'a Arc<HeadViews>>,
     /// Requested updates of display memories that are kept.
-    pub notes: &'a FaceNotes,
+    pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
     /// Final pictures, in the order in which they are shown.
@@ -43,7 +43,7 @@ pub struct Settled<'a> {
     pub window: Option<ResultWindow>,
 }
 
-impl Settled<'_> {
+impl FinalResults<'_> {
     /// Returns the pictures that lie in the window.
     pub fn steady_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         let display = self.record.display();
@@ -66,13 +66,13 @@ impl Settled<'_> {
 
 /// A streaming observer of a run. The observer receives every record once, in order, and must store what it needs
 /// later, because the run discards old records.
-pub trait Summing: Debug + Send {
+pub trait StreamingObserver: Debug + Send {
     /// Processes records that are final.
-    fn take(&mut self, settled: &Settled<'_>);
+    fn take(&mut self, settled: &FinalResults<'_>);
 
     /// Returns the result after the last call of `take`.
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 
 /// Function that creates the streaming observer of a run.
-pub type Sums = fn() -> Box<dyn Summing>;
+pub type ObserverFactory = fn() -> Box<dyn StreamingObserver>;

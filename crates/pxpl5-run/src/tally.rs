@@ -1,15 +1,15 @@
 //! Streaming sums of a run's results.
 //!
 //! Pictures are processed in the order in which they are shown, each once, after all its records are complete. With a
-//! limit on samples, memory stays constant except for one byte a period ([`PictureEnds`]).
+//! limit on samples, memory stays constant except for one byte a period ([`PictureResults`]).
 
-use crate::face_notes::FaceNotes;
-use crate::latency::{ENDS, LATENCY_PARTS, Pair, WHOSE, pair, parts};
-use crate::picture_ends::PictureEnds;
+use crate::face_notes::RequestedUpdates;
+use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
+use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::samples::Samples;
 use crate::summary::retraces;
-use crate::sums::Settled;
+use crate::sums::FinalResults;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
@@ -56,10 +56,10 @@ pub struct Tally {
     pub first_late_regions: Vec<LateRegion>,
     /// Number of records (marks, arrivals, swaps) that were read to compute the sums. A record that is read twice
     /// counts twice.
-    pub records_looked_at: u64,
-    /// Latencies by surface or pair of surfaces, in the order of [`WHOSE`] and [`ENDS`].
+    pub records_read: u64,
+    /// Latencies by surface or pair of surfaces, in the order of [`LATENCY_SURFACES`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,
-    ends: PictureEnds,
+    ends: PictureResults,
     /// First period of the window, as far as the window is known.
     window_from: Option<PeriodNumber>,
     /// Sum of the port times of all regions, in milliseconds.
@@ -116,9 +116,9 @@ impl Tally {
             memory_updates: BTreeMap::new(),
             late_regions: 0,
             first_late_regions: Vec::new(),
-            records_looked_at: 0,
-            surfaces_ms: vec![none(); WHOSE.len() * ENDS.len()],
-            ends: PictureEnds::default(),
+            records_read: 0,
+            surfaces_ms: vec![none(); LATENCY_SURFACES.len() * ENDS.len()],
+            ends: PictureResults::default(),
             window_from: None,
             region_ms: 0.0,
             region_pixels: 0,
@@ -147,8 +147,8 @@ impl Tally {
     }
 
     /// Adds the times of counted pictures that lie in the window. All records of these pictures must be complete.
-    pub(crate) fn take(&mut self, settled: &Settled<'_>) {
-        let Settled { pipeline, record, notes, window, .. } = *settled;
+    pub(crate) fn take(&mut self, settled: &FinalResults<'_>) {
+        let FinalResults { pipeline, record, notes, window, .. } = *settled;
         let Some(window) = window else { return };
         if self.window_from != Some(window.first_period) {
             // The window begins later than assumed, so all samples so far lie before the window.
@@ -168,7 +168,7 @@ impl Tally {
         self.take_memories(notes, &steady);
     }
 
-    fn take_memories(&mut self, notes: &FaceNotes, pictures: &[PictureTimes]) {
+    fn take_memories(&mut self, notes: &RequestedUpdates, pictures: &[PictureTimes]) {
         let memories: BTreeMap<PictureNumber, usize> =
             notes.all().iter().map(|note| (note.picture, note.memory)).collect();
         for memory in pictures.iter().filter_map(|times| memories.get(&times.picture)) {
@@ -186,7 +186,7 @@ impl Tally {
         self.shown_in_a_row = before.shown_in_a_row;
         self.late_regions = before.late_regions;
         self.first_late_regions = before.first_late_regions;
-        self.records_looked_at = before.records_looked_at;
+        self.records_read = before.records_read;
         self.ends = before.ends;
         self.region_ms = before.region_ms;
         self.region_pixels = before.region_pixels;
@@ -206,7 +206,7 @@ impl Tally {
     }
 
     fn take_pair(&mut self, pair: &Pair) {
-        let latencies = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
+        let latencies = LATENCY_SURFACES.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         for (samples, ((first, last), (_, _, end))) in self.surfaces_ms.iter_mut().zip(latencies) {
             samples.push((end(pair, last) - pair.transform_at[first]).as_ms());
         }
@@ -215,7 +215,7 @@ impl Tally {
     /// Returns the latencies of both surfaces and of the pair. The iterator is empty if surfaces have no TRANSFORM of
     /// their own.
     pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
-        let latencies = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
+        let latencies = LATENCY_SURFACES.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);
         with.map(|(ms, ((first, last), (until, event, _)))| SurfaceLatency { first, last, until, event, ms })
     }
@@ -292,7 +292,7 @@ impl Tally {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
     }
 
-    pub(crate) const fn ends(&self) -> &PictureEnds {
+    pub(crate) const fn ends(&self) -> &PictureResults {
         &self.ends
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
-use crate::face_notes::FaceNotes;
+use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::keep::Keep;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::ResultWindow;
 use crate::samples::KEPT_SAMPLES;
-use crate::sums::{Settled, Summing};
+use crate::sums::{FinalResults, StreamingObserver};
 use crate::tally::Tally;
 use pxpl5_machine::Record;
 use pxpl5_sim::Time;
@@ -33,7 +33,7 @@ const PERIODS_HELD: u64 = 32;
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,
-    sum: Option<Box<dyn Summing>>,
+    sum: Option<Box<dyn StreamingObserver>>,
     forgets: bool,
     samples: usize,
     /// Latest instant for which all pictures that were shown by then are in the sums.
@@ -60,7 +60,7 @@ impl Window {
             Keep::Statistics => !experiment.traffic,
             Keep::Recent => true,
         };
-        let forgets = may_forget && experiment.pipeline.can_forget();
+        let forgets = may_forget && experiment.pipeline.can_discard_records();
         let samples = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), samples);
         let sums = experiment.sums.filter(|_| forgets && experiment.keep == Keep::Statistics);
@@ -74,12 +74,12 @@ impl Window {
             return;
         }
         let record = run.machine.record();
-        self.tally.records_looked_at += record.observation().records() as u64;
+        self.tally.records_read += record.observation().records() as u64;
         // Late regions are counted before their records are discarded.
-        if let Some(begin) = self.take_old(experiment, run, now) {
+        if let Some(begin) = self.take_final(experiment, run, now) {
             self.tally.take_late(&experiment.pipeline.late_regions(record, begin));
             let of_head = before(record, begin).unwrap_or_default();
-            run.forget_before(begin, of_head);
+            run.discard_before(begin, of_head);
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
         // The next pass begins when the number of records has doubled, so the cost a record is bounded.
@@ -88,7 +88,7 @@ impl Window {
 
     /// Adds final pictures to the sums. Returns the instant from which on records are still needed for the other
     /// pictures.
-    fn take_old(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
+    fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
         let newest_taken = fresh.len().checked_sub(PICTURES_HELD + 1)?;
@@ -110,7 +110,7 @@ impl Window {
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
         let window = Some(ResultWindow::begun(self.tally.ends(), every, known, experiment.end()));
-        self.take(&Settled { arrivals, pictures, next, until, samples, window, ..all });
+        self.take(&FinalResults { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);
         Some(begin)
     }
@@ -122,7 +122,7 @@ impl Window {
     }
 
     /// Hands final results to all streaming observers.
-    fn take(&mut self, settled: &Settled<'_>) {
+    fn take(&mut self, settled: &FinalResults<'_>) {
         self.tally.take_arrivals(settled.arrivals, settled.record.message_span());
         self.tally.take(settled);
         self.sum.iter_mut().for_each(|sum| sum.take(settled));
@@ -133,14 +133,14 @@ impl Window {
         mut self,
         experiment: &Experiment,
         record: &Record,
-        (head, notes): (Option<&Arc<HeadViews>>, &FaceNotes),
+        (head, notes): (Option<&Arc<HeadViews>>, &RequestedUpdates),
         reached: PeriodNumber,
     ) -> Closed {
         let pipeline = experiment.pipeline.as_ref();
         let end = record.tick(experiment.end());
         // Periods that were not simulated do not count.
         self.tally.end_early(reached);
-        self.tally.records_looked_at += record.observation().records() as u64;
+        self.tally.records_read += record.observation().records() as u64;
         self.tally.take_late(&pipeline.late_regions(record, end));
         let pictures = self.fresh(pipeline, record, end);
         // All remaining pictures and arrivals are final at the end of the run.
@@ -150,7 +150,7 @@ impl Window {
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
-        self.take(&Settled { arrivals, pictures: &pictures, samples, window, ..all });
+        self.take(&FinalResults { arrivals, pictures: &pictures, samples, window, ..all });
         Closed { tally: self.tally, window, said: self.sum.map(|sum| sum.said()), pictures }
     }
 }

@@ -2,15 +2,15 @@
 //! of the run, and heavier loads have worse results.
 
 use proptest::prelude::*;
-use pxpl5_run::PictureEnd::{Incomplete, Late, Shown};
-use pxpl5_run::{DuePictures, PictureEnd, WARM_UP_PERIODS};
+use pxpl5_run::PictureResult::{Incomplete, Late, Shown};
+use pxpl5_run::{DuePictures, PictureResult, WARM_UP_PERIODS};
 use pxpl5_wire::PeriodNumber;
 
-fn count(pictures: &[(u64, PictureEnd)], every: u64, periods: u64) -> DuePictures {
+fn count(pictures: &[(u64, PictureResult)], every: u64, periods: u64) -> DuePictures {
     counted(pictures, every, periods).expect("a window")
 }
 
-fn counted(pictures: &[(u64, PictureEnd)], every: u64, periods: u64) -> Option<DuePictures> {
+fn counted(pictures: &[(u64, PictureResult)], every: u64, periods: u64) -> Option<DuePictures> {
     let pictures = pictures.iter().map(|(period, end)| (PeriodNumber(*period), *end));
     DuePictures::count(pictures, every, PeriodNumber(periods))
 }
@@ -21,7 +21,7 @@ fn window(due: &DuePictures) -> u64 {
 }
 
 /// Returns a picture every `apart` periods from `first` on, all with the same result.
-fn regular(first: u64, apart: u64, periods: u64, end: PictureEnd) -> Vec<(u64, PictureEnd)> {
+fn regular(first: u64, apart: u64, periods: u64, end: PictureResult) -> Vec<(u64, PictureResult)> {
     (first..periods).step_by(apart as usize).map(|period| (period, end)).collect()
 }
 
@@ -125,12 +125,12 @@ fn a_rate_is_the_pictures_shown_over_the_time_of_the_window() {
 
 /// Returns the pictures of a pipeline whose queues are empty at first. Pictures are in time until `filled`. Later, only
 /// every `apart`-th picture is in time.
-fn filling(filled: u64, apart: u64, periods: u64) -> Vec<(u64, PictureEnd)> {
+fn filling(filled: u64, apart: u64, periods: u64) -> Vec<(u64, PictureResult)> {
     let in_time = |period: u64| period < filled || (period - filled) % apart == apart - 1;
     (2..periods).map(|period| (period, if in_time(period) { Shown } else { Incomplete })).collect()
 }
 
-fn ends() -> impl Strategy<Value = Vec<(u64, PictureEnd)>> {
+fn ends() -> impl Strategy<Value = Vec<(u64, PictureResult)>> {
     let end = prop_oneof![Just(None), Just(Some(Shown)), Just(Some(Late)), Just(Some(Incomplete))];
     proptest::collection::vec(end, 0..200)
         .prop_map(|ends| (0..).zip(ends).filter_map(|(period, end)| Some((period, end?))).collect())

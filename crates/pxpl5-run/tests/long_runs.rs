@@ -102,7 +102,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     });
     let outcome = watched.expect("it runs");
     let poses = outcome.head().map_or(0, |head| head.sampled().len() as u64);
-    [most[0], most[1], outcome.tally().records_looked_at, outcome.record().events(), poses]
+    [most[0], most[1], outcome.tally().records_read, outcome.record().events(), poses]
 }
 
 /// A page reads recorded messages, and a run for it keeps the records of the last periods.

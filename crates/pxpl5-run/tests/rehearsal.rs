@@ -24,7 +24,7 @@ fn what_one_predictor_was_told_serves_another() {
         assert!(of_kalman.rehearsal().is_some(), "{name}");
         for kind in [PredictorKind::Kalman, PredictorKind::ConstantVelocity] {
             let alone = plain.clone().head(head(kind));
-            let told = alone.clone().rehearsed_as(of_kalman.rehearsal().cloned());
+            let told = alone.clone().with_dry_run(of_kalman.rehearsal().cloned());
             let [alone, told] = [alone, told].map(|experiment| experiment.run().expect("it runs"));
             assert_eq!(alone.record().trace_hash(), told.record().trace_hash(), "{name}, {kind:?}");
             let sampled = [&alone, &told].map(|outcome| outcome.head().expect("tracked").sampled());

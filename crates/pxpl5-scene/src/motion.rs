@@ -117,7 +117,7 @@ impl HeadMotion {
     /// Creates a motion that looks at a model from a distance at which both eyes always see all of it, with any seed.
     /// The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
     #[must_use]
-    pub fn seeing_whole(centre: Vec3, radius: f64) -> Self {
+    pub fn always_visible(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }

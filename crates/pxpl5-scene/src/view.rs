@@ -151,6 +151,7 @@ impl Hmd {
             EyePoint::Right => half,
             EyePoint::Centre => 0.0,
         };
+        // Optical axes are parallel, so an eye is only shifted.
         let head_to_eye = DMat4::from_translation(DVec3::new(-right_of_head, 0.0, 0.0));
         View {
             eye,
@@ -168,6 +169,7 @@ fn half_width(config: &HmdConfig) -> f64 {
 }
 
 fn projection(config: &HmdConfig) -> Mat4 {
+    // Half sizes of the picture at a distance of 1.
     let half_width = half_width(config);
     let half_height = half_width * f64::from(config.height_px) / f64::from(config.width_px);
     let near = config.near_m;

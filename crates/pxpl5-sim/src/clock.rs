@@ -52,6 +52,7 @@ impl Clock {
     /// Returns the number of the first edge at or after `time`.
     #[must_use]
     pub const fn edge_at_or_after(&self, time: Time) -> u64 {
+        // The division rounds down, so the edge may still lie before `time`.
         let mut n = (time.0 as u128 * self.denominator as u128 / self.numerator_ps as u128) as u64;
         while self.edge(n).0 < time.0 {
             n += 1;

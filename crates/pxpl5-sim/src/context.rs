@@ -56,6 +56,7 @@ impl<E, O> Context<E, O> {
     /// one.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
+        // The usual case of one event needs no iterator.
         if self.own.len() > 1 {
             return self.own.drain(..).for_each(|(time, phase, event)| take(time, phase, event));
         }
@@ -66,7 +67,7 @@ impl<E, O> Context<E, O> {
 
     /// Returns true if there is no output since the last [`Context::drain_outputs`].
     #[must_use]
-    pub const fn is_silent(&self) -> bool {
+    pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()
     }
 
@@ -124,6 +125,7 @@ impl<E, O> TestBench<E, O> {
                 break;
             };
             handle(event, self.context.at(now));
+            // Events that the device scheduled for itself go into the queue.
             for (time, phase, event) in self.context.drain_events() {
                 self.queue.schedule(time, phase, event);
             }
@@ -172,9 +174,9 @@ mod tests {
             assert_eq!(taken, expected);
             assert_eq!(context.drain_events().len(), 0);
         }
-        assert!(context.is_silent());
+        assert!(context.has_no_outputs());
         context.output(Time(9), 1);
-        assert!(!context.is_silent());
+        assert!(!context.has_no_outputs());
     }
 
     #[test]

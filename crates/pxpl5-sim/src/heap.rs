@@ -1,5 +1,5 @@
-//! A heap with four children per node. It is half as deep as a binary heap, and the children of a node are adjacent in
-//! memory.
+//! A heap with four children per node. This heap is half as deep as a binary heap, and the children of a node are
+//! adjacent in memory.
 
 /// The sort key of a heap, the least first.
 pub(crate) trait Keyed: Copy {
@@ -33,6 +33,7 @@ impl<T: Keyed> QuadHeap<T> {
     pub(crate) fn push(&mut self, item: T) {
         let mut place = self.items.len();
         self.items.push(item);
+        // Move the parents down until the item fits.
         while place > 0 {
             let parent = (place - 1) / CHILDREN;
             if self.items[parent].key() <= item.key() {
@@ -47,6 +48,7 @@ impl<T: Keyed> QuadHeap<T> {
     pub(crate) fn pop(&mut self) -> Option<T> {
         let last = self.items.pop()?;
         let Some(first) = self.items.first().copied() else { return Some(last) };
+        // Move the last item down from the root.
         let mut place = 0;
         while let Some((child, item)) = self.least_child(place).filter(|(_, item)| item.key() < last.key()) {
             self.items[place] = item;
@@ -64,6 +66,7 @@ impl<T: Keyed> QuadHeap<T> {
         let mut least = *children.first()?;
         let mut at = begin;
         for (child, item) in (begin..).zip(children) {
+            // Selects without branches, because the result of each comparison is unpredictable.
             let is_less = item.key() < least.key();
             least = if is_less { *item } else { least };
             at = if is_less { child } else { at };

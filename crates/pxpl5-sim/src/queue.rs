@@ -105,9 +105,11 @@ impl<E> EventQueue<E> {
     }
 
     fn enter(&mut self, due: Due) {
+        // Events later than the first one of the heap go into the heap.
         if self.heap.peek().is_some_and(|first| first.key() < due.key()) {
             return self.heap.push(due);
         }
+        // Earlier events go into the sorted list, whose latest event moves to the heap if the list is full.
         let sooner = self.near.iter().rev().take_while(|near| near.key() < due.key()).count();
         self.near.insert(self.near.len() - sooner, due);
         if self.near.len() > NEAR {
@@ -126,11 +128,12 @@ impl<E> EventQueue<E> {
 
     /// Returns true if the next event is in `soon`. Arrivals of the instant, and work scheduled before the instant,
     /// come first.
-    fn is_soon(&self, first: Option<Due>) -> bool {
+    fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
 
     fn keep(&mut self, event: E) -> u32 {
+        // Reuse the slot of a taken event.
         if let Some(slot) = self.free.pop() {
             self.events[slot as usize] = Some(event);
             return slot;
@@ -141,8 +144,8 @@ impl<E> EventQueue<E> {
 
     /// Removes and returns the next event, and advances the current time to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
-        if self.is_soon(self.first()) {
-            return self.take_soon().map(|event| (self.now, Phase::Work, event));
+        if self.is_current_work_next(self.first()) {
+            return self.take_current_work().map(|event| (self.now, Phase::Work, event));
         }
         let due = self.take_first()?;
         let event = self.take(due)?;
@@ -157,8 +160,8 @@ impl<E> EventQueue<E> {
     /// Removes and returns the next event if it is before `end`, and advances the current time to it.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
-        if self.is_soon(first) {
-            let event = if self.now < end { self.take_soon() } else { None }?;
+        if self.is_current_work_next(first) {
+            let event = if self.now < end { self.take_current_work() } else { None }?;
             return Some((self.now, event));
         }
         if first?.time >= end {
@@ -168,7 +171,7 @@ impl<E> EventQueue<E> {
         Some((due.time, self.take(due)?))
     }
 
-    fn take_soon(&mut self) -> Option<E> {
+    fn take_current_work(&mut self) -> Option<E> {
         self.popped += 1;
         self.soon.pop_front()
     }
@@ -199,7 +202,7 @@ impl<E> EventQueue<E> {
     #[must_use]
     pub fn peek(&self) -> Option<(Time, &E)> {
         let first = self.first();
-        if self.is_soon(first) {
+        if self.is_current_work_next(first) {
             return Some((self.now, self.soon.front()?));
         }
         let due = first?;

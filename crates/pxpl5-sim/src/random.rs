@@ -2,8 +2,8 @@
 
 use crate::trace::{INCREMENT, mix};
 
-/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014).
-/// It returns 2^64 numbers of 64 bits, each once. It is for tests and random lists, and not for cryptography.
+/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014). The
+/// generator returns 2^64 numbers of 64 bits, each once, and is for tests and random lists, and not for cryptography.
 #[derive(Clone, Copy, Debug)]
 pub struct SplitMix64 {
     state: u64,

@@ -18,7 +18,7 @@ pub const fn mix(value: u64) -> u64 {
 
 /// Sum of the hashes of all records (time, facts).
 ///
-/// The sum does not depend on the order of simultaneous events, which has no meaning. It depends on every time and
+/// The sum does not depend on the order of simultaneous events, which has no meaning. The sum depends on every time and
 /// every fact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct TraceHash(pub u64);

@@ -15,7 +15,7 @@ use thiserror::Error;
 
 /// Surfaces of the first display that a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FilmOf {
+pub enum FilmSurfaces {
     /// A single surface, such as that of an eye.
     One(SurfaceId),
     /// All surfaces side by side, the first one on the left.
@@ -29,7 +29,7 @@ pub struct Film {
     experiment: Experiment,
     first_period: PeriodNumber,
     periods: u64,
-    of: FilmOf,
+    of: FilmSurfaces,
 }
 
 /// Error of a film.
@@ -69,7 +69,7 @@ pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 impl Film {
     /// Creates a film of an experiment, from a period of the display on.
     #[must_use]
-    pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmOf) -> Self {
+    pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmSurfaces) -> Self {
         Self { experiment, first_period, periods, of }
     }
 
@@ -117,9 +117,9 @@ impl Film {
     fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, FilmError> {
         let there = display.surfaces().len();
         match self.of {
-            FilmOf::One(found) if found.index() >= there => Err(FilmError::Surface { there, found }),
-            FilmOf::One(surface) => Ok(vec![surface]),
-            FilmOf::All => Ok((0..there as u16).map(SurfaceId).collect()),
+            FilmSurfaces::One(found) if found.index() >= there => Err(FilmError::Surface { there, found }),
+            FilmSurfaces::One(surface) => Ok(vec![surface]),
+            FilmSurfaces::All => Ok((0..there as u16).map(SurfaceId).collect()),
         }
     }
 }

@@ -44,6 +44,6 @@ pub mod trace_export;
 mod updates;
 
 pub use animation::Animation;
-pub use film::{FILM_PERIODS, Film, FilmError, FilmOf};
+pub use film::{FILM_PERIODS, Film, FilmError, FilmSurfaces};
 pub use frame_time::frame_seconds;
 pub use picture::{PngError, png_bytes};

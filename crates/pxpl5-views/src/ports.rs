@@ -15,7 +15,7 @@ pub(crate) struct DisplayPort {
 
 /// A picture that a port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PortShown {
+pub struct ShownPicture {
     /// Picture, or update, that was swapped in.
     pub picture: PictureNumber,
     /// Retrace at which the picture was swapped in.
@@ -35,7 +35,7 @@ pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
 }
 
 /// Returns true if a surface shows the content of several ports.
-pub(crate) fn is_behind_ports(record: &Record, surface: SurfaceId) -> bool {
+pub(crate) fn has_separate_ports(record: &Record, surface: SurfaceId) -> bool {
     let mut first = 0;
     record.displays().iter().any(|display| {
         let own = first..first + display.surfaces().len();
@@ -50,9 +50,9 @@ fn has_more_ports(display: &dyn Display) -> bool {
 
 /// Returns the pictures that a port has shown, in the order in which they were begun. Each is shown from one swap to
 /// the next.
-pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<PortShown> {
+pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);
     let all = shown.iter().zip(ends);
-    all.map(|(shown, end)| PortShown { picture: shown.picture, begin: shown.at, end }).collect()
+    all.map(|(shown, end)| ShownPicture { picture: shown.picture, begin: shown.at, end }).collect()
 }

@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_views::results::origin;
 use pxpl5_views::timeline::{Bar, Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::{Events, Trace, Track};
-use pxpl5_views::{Film, FilmError, FilmOf};
+use pxpl5_views::{Film, FilmError, FilmSurfaces};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Cursor;
 
@@ -103,7 +103,7 @@ fn every_display_of_a_machine_has_its_groups() {
 #[test]
 fn a_film_has_the_size_and_the_rate_of_its_display() {
     let mut bytes = Vec::new();
-    Film::new(hires(10), PeriodNumber(6), 2, FilmOf::All)
+    Film::new(hires(10), PeriodNumber(6), 2, FilmSurfaces::All)
         .write(&[("seed", "1".to_owned())], &mut bytes)
         .expect("written");
     let reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("PNG");
@@ -116,9 +116,9 @@ fn a_film_has_the_size_and_the_rate_of_its_display() {
 
 #[test]
 fn a_film_of_what_is_not_there_is_refused() {
-    let film = Film::new(hires(10), PeriodNumber(6), 2, FilmOf::One(SurfaceId(1)));
+    let film = Film::new(hires(10), PeriodNumber(6), 2, FilmSurfaces::One(SurfaceId(1)));
     let error = film.write(&[], Vec::new()).expect_err("there is one surface");
     assert_eq!(error.to_string(), "a film of surface 1: the display has 1, counted from 0");
-    let nothing = Film::new(hires(10), PeriodNumber(6), 0, FilmOf::All);
+    let nothing = Film::new(hires(10), PeriodNumber(6), 0, FilmSurfaces::All);
     assert!(matches!(nothing.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }

@@ -163,7 +163,7 @@ pub fn compare(
         }
         finished(comparison.variants.len() as u64, all.len() as u64);
     }
-    comparison.relate_to_exact();
+    comparison.set_brightness_ratios();
     Ok(comparison)
 }
 
@@ -217,7 +217,7 @@ impl Variant {
 
 impl VolumeComparison {
     /// Divides each row's brightness by the brightness of the exact clip with the same projection.
-    fn relate_to_exact(&mut self) {
+    fn set_brightness_ratios(&mut self) {
         let exact: Vec<(ProjectionKind, Vec<u64>)> = self
             .variants
             .iter()
@@ -228,6 +228,7 @@ impl VolumeComparison {
             let Some((_, of)) = exact.iter().find(|(projection, _)| *projection == row.variant.projection) else {
                 continue;
             };
+            // Rings that the exact clip leaves dark have no ratio.
             let ratio = |(own, exact): (&u64, &u64)| (*exact > 0).then(|| *own as f64 / *exact as f64);
             row.brightness_over_exact = row.brightness_by_radius.iter().zip(of).map(ratio).collect();
         }

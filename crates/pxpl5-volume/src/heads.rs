@@ -96,7 +96,7 @@ pub struct HeadStudy {
 
 /// The parameters of a study of a moving head.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeadQuestion {
+pub struct HeadStudyConfig {
     /// Latency of the head-mounted display, milliseconds, or `None` for the latency of the volume.
     pub latency_ms: Option<f64>,
     /// Length of the study, seconds.
@@ -107,7 +107,7 @@ pub struct HeadQuestion {
 
 /// A volume with a moving head before it.
 #[derive(Debug)]
-pub struct HeadBefore<'a> {
+pub struct HeadComparison<'a> {
     volume: &'a Volume,
     motion: &'a dyn Motion,
     viewer: ViewerNumbers,
@@ -130,7 +130,7 @@ impl Volume {
     }
 }
 
-impl<'a> HeadBefore<'a> {
+impl<'a> HeadComparison<'a> {
     /// Places a volume before a moving head.
     ///
     /// # Errors
@@ -142,6 +142,7 @@ impl<'a> HeadBefore<'a> {
             expected: "0 to 10000 ms (--latency; Pixel-Planes 5 has none of its own here)".to_owned(),
             found,
         };
+        // The default is the latency of the volume itself.
         let latency_ms = latency_ms.or_else(|| volume.latency_ms()).ok_or_else(|| wrong("none".to_owned()))?;
         if !(0.0..=10_000.0).contains(&latency_ms) {
             return Err(wrong(latency_ms.to_string()));
@@ -178,7 +179,7 @@ impl<'a> HeadBefore<'a> {
     ///
     /// [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
-    pub fn study(&self, question: &HeadQuestion) -> Result<HeadStudy, VolumeError> {
+    pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, VolumeError> {
         let view = self.view()?;
         let samples = self.instants(question)?.into_iter().map(|time_ps| self.sample(time_ps, &view)).collect();
         let volume_latency_ms = self.volume.latency_ms();
@@ -196,8 +197,8 @@ impl<'a> HeadBefore<'a> {
     }
 
     /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
-    fn instants(&self, question: &HeadQuestion) -> Result<Vec<u64>, VolumeError> {
-        let HeadQuestion { seconds, instants, .. } = *question;
+    fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, VolumeError> {
+        let HeadStudyConfig { seconds, instants, .. } = *question;
         let wrong =
             |what, expected: &str, found: String| VolumeError::Missing { what, expected: expected.to_owned(), found };
         if !(seconds > 0.0 && seconds <= 3600.0) {
@@ -206,6 +207,7 @@ impl<'a> HeadBefore<'a> {
         if instants < 2 {
             return Err(wrong("instants", "2 or more", instants.to_string()));
         }
+        // The first instant must have a picture, which is drawn one latency earlier.
         let step = seconds * PS_PER_S / f64::from(instants - 1);
         Ok((0..instants).map(|i| self.latency_ps + (f64::from(i) * step) as u64).collect())
     }
@@ -227,7 +229,9 @@ impl<'a> HeadBefore<'a> {
                 let angle = angle_between(*point - eye, *shown - eye);
                 voxel.add(angle.to_degrees());
                 voxel_mm.add(angle * distance_mm);
-                if let Some(error) = view.pixel_error(from_volume.transform_point3(*point), &drawn_for, &seen_from) {
+                if let Some(error) =
+                    view.misregistration_at(from_volume.transform_point3(*point), &drawn_for, &seen_from)
+                {
                     hmd.add(error.degrees);
                     hmd_px.add(error.pixels);
                     hmd_mm.add(error.degrees.to_radians() * distance_mm);
@@ -290,8 +294,8 @@ impl<'a> HeadBefore<'a> {
     /// # Errors
     ///
     /// The same as [`Self::study`].
-    pub fn film_instants(&self, question: &HeadQuestion, frames: u32) -> Result<Vec<u64>, VolumeError> {
-        self.instants(&HeadQuestion { instants: frames, ..*question })
+    pub fn film_instants(&self, question: &HeadStudyConfig, frames: u32) -> Result<Vec<u64>, VolumeError> {
+        self.instants(&HeadStudyConfig { instants: frames, ..*question })
     }
 
     fn look(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<Look, VolumeError> {

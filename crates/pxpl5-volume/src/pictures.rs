@@ -153,6 +153,7 @@ pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
     let mut picture = RgbImage::from_pixel(width, height, Rgb(background));
     let Some(colours) = &volume.frame.colours else { return picture };
     let drawn = colours.len() as u32;
+    // A mirrored slice has no colours of its own.
     let is_mirrored = volume.settings.strobes == Strobes::Mirror && slice >= drawn;
     for sample in &colours[(slice % drawn) as usize] {
         let x = sample.pixel % width;

@@ -181,6 +181,7 @@ impl VolumeSettings {
             rotation: self.rotation,
             clip: self.slice_clip(),
             ties: self.ties,
+            // 53 bits are the full double precision.
             plane_fraction_bits: (bits < 53).then_some(bits as u32),
             projection: self.slice_projection(),
         })?)
@@ -194,6 +195,7 @@ impl VolumeSettings {
     pub fn volume_config(&self) -> Result<VolumeConfig, VolumeError> {
         self.check_tables()?;
         let size = self.tile.size as u32;
+        // A size of 0 turns tiles off.
         let tiling = Tiling { tile: (size > 0).then_some(size), batch: self.tile.batch as u32 };
         tiling.check()?;
         Ok(VolumeConfig {
@@ -243,6 +245,7 @@ impl VolumeSettings {
                 return Err(Self::wrong(prefix, entry.info.name, &format!("{least} to {most}"), entry.value));
             }
         }
+        // A range cannot express the allowed numbers of samples.
         let DrawNumbers { samples, .. } = self.draw;
         if ![1, 4, 16].contains(&samples) {
             return Err(Self::wrong("draw", "samples", "1, 4 or 16", samples));

@@ -21,6 +21,7 @@ impl Workers for Counted<'_> {
     fn run(&self, tasks: Vec<Task<'_>>) {
         let all = tasks.len() as u64;
         let done = AtomicU64::new(0);
+        // Wrap each task so that it reports its end.
         let counted = tasks.into_iter().map(|task| {
             let done = &done;
             let counted = move || {

@@ -1,7 +1,7 @@
 //! A head before the volume: errors of a late head-mounted display, and errors of voxels.
 
 use pxpl5_scene::builtin;
-use pxpl5_volume::heads::{HeadBefore, HeadQuestion};
+use pxpl5_volume::heads::{HeadComparison, HeadStudyConfig};
 use pxpl5_volume::spatialgl::OneThread;
 use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 use std::sync::LazyLock;
@@ -17,10 +17,10 @@ static VOLUME: LazyLock<Volume> = LazyLock::new(|| {
     Volume::draw(&settings, &builtin("mig").expect("built in"), &OneThread).expect("drawn")
 });
 
-const QUESTION: HeadQuestion = HeadQuestion { latency_ms: Some(50.0), seconds: 1.0, instants: 11 };
+const QUESTION: HeadStudyConfig = HeadStudyConfig { latency_ms: Some(50.0), seconds: 1.0, instants: 11 };
 
-fn study(motion: &dyn Motion, question: &HeadQuestion) -> pxpl5_volume::heads::HeadStudy {
-    let before = HeadBefore::new(&VOLUME, motion, question.latency_ms).expect("valid");
+fn study(motion: &dyn Motion, question: &HeadStudyConfig) -> pxpl5_volume::heads::HeadStudy {
+    let before = HeadComparison::new(&VOLUME, motion, question.latency_ms).expect("valid");
     before.study(question).expect("valid")
 }
 
@@ -42,12 +42,12 @@ fn a_still_head_has_no_error_of_latency() {
 #[test]
 fn a_sliding_head_is_off_by_its_way_over_the_distance() {
     let slide = Slide::right_at(0.4);
-    let short = HeadQuestion { seconds: 0.01, ..QUESTION };
+    let short = HeadStudyConfig { seconds: 0.01, ..QUESTION };
     let first = study(&slide, &short).samples[0];
     let expected = (20.0f64 / 508.0).atan().to_degrees();
     let found = first.hmd_mean_deg.expect("ahead");
     assert!((found / expected - 1.0).abs() < 0.1, "{found}, not about {expected}");
-    let later = study(&slide, &HeadQuestion { latency_ms: Some(100.0), ..short }).samples[0];
+    let later = study(&slide, &HeadStudyConfig { latency_ms: Some(100.0), ..short }).samples[0];
     assert!(later.hmd_mean_deg > first.hmd_mean_deg);
     assert!(later.azimuth_deg > first.azimuth_deg, "to the right is towards +x of the volume");
 }
@@ -55,7 +55,7 @@ fn a_sliding_head_is_off_by_its_way_over_the_distance() {
 /// A turn of 60 degrees a second with 50 ms: 3 degrees, exactly, about the head itself (eyes are 31 mm off the turn's axis).
 #[test]
 fn a_turning_head_is_off_by_its_rate_times_the_latency() {
-    let first = study(&Pan::at(60.0), &HeadQuestion { seconds: 0.01, ..QUESTION }).samples[0];
+    let first = study(&Pan::at(60.0), &HeadStudyConfig { seconds: 0.01, ..QUESTION }).samples[0];
     let found = first.hmd_mean_deg.expect("ahead");
     assert!((found - 3.0).abs() < 0.2, "{found}");
 }
@@ -82,7 +82,7 @@ fn voxels_are_off_by_their_own_size_and_no_more() {
 #[test]
 fn both_eyes_see_both_displays() {
     let slide = Slide::right_at(0.4);
-    let before = HeadBefore::new(&VOLUME, &slide, Some(50.0)).expect("valid");
+    let before = HeadComparison::new(&VOLUME, &slide, Some(50.0)).expect("valid");
     let at = before.film_instants(&QUESTION, 3).expect("valid")[2];
     let exposure = before.exposure(at, 64, &OneThread).expect("seen");
     let picture = before.picture(at, 64, exposure, &OneThread).expect("seen");
@@ -100,7 +100,7 @@ fn both_eyes_see_both_displays() {
 fn a_volume_is_as_late_as_its_model_and_its_turn() {
     let late = VOLUME.latency_ms().expect("a GPU drew it");
     assert!((late - 1e3 / VOLUME.time().serial_hz() - 50.0).abs() < 1e-9, "three quarters of a turn of 66.7 ms");
-    let study = study(&Still(Pose::IDENTITY), &HeadQuestion { latency_ms: None, ..QUESTION });
+    let study = study(&Still(Pose::IDENTITY), &HeadStudyConfig { latency_ms: None, ..QUESTION });
     assert_eq!((study.latency_is, study.volume_latency_ms), ("the volume's", Some(late)));
     assert!((study.latency_ms - late).abs() < 1e-6);
 }
@@ -109,14 +109,14 @@ fn a_volume_is_as_late_as_its_model_and_its_turn() {
 fn what_cannot_be_asked_is_refused() {
     let still = Still(Pose::IDENTITY);
     for latency in [-1.0, f64::NAN, 1e9] {
-        let error = HeadBefore::new(&VOLUME, &still, Some(latency)).expect_err("refused").to_string();
+        let error = HeadComparison::new(&VOLUME, &still, Some(latency)).expect_err("refused").to_string();
         assert!(error.contains("latency") && error.contains("0 to 10000"), "{error}");
     }
-    let before = HeadBefore::new(&VOLUME, &still, Some(0.0)).expect("valid");
+    let before = HeadComparison::new(&VOLUME, &still, Some(0.0)).expect("valid");
     for (question, part) in [
-        (HeadQuestion { seconds: 0.0, ..QUESTION }, "length"),
-        (HeadQuestion { seconds: f64::NAN, ..QUESTION }, "length"),
-        (HeadQuestion { instants: 1, ..QUESTION }, "instants"),
+        (HeadStudyConfig { seconds: 0.0, ..QUESTION }, "length"),
+        (HeadStudyConfig { seconds: f64::NAN, ..QUESTION }, "length"),
+        (HeadStudyConfig { instants: 1, ..QUESTION }, "instants"),
     ] {
         let error = before.study(&question).expect_err("refused").to_string();
         assert!(error.contains(part), "{error}");

@@ -9,7 +9,7 @@ use pxpl5_run::Stepper;
 const BEFORE: u32 = 8;
 const AFTER: u32 = 8;
 
-/// Returns lines with registers and code. They are empty for a board without a processor. Only the cycle level has
+/// Returns lines with registers and code. A board without a processor has no lines. Only the cycle level has
 /// processors.
 pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
     stepper.machine().board(board).and_then(|gp| gp.with_processor(of)).unwrap_or_default()

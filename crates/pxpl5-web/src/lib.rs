@@ -155,8 +155,8 @@ impl WebMachine {
         self.0.difference(surface).map(|difference| difference.heat).unwrap_or_default()
     }
 
-    /// Returns the difference between the seen picture and the ideal one as JSON. The object has the percentage of pixels
-    /// that differ, and the mean of their largest differences in per cent. `null` without an ideal picture.
+    /// Returns the difference between the seen picture and the ideal one as JSON. The object has the percentage of
+    /// pixels that differ, and the mean of their largest differences in per cent. `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())

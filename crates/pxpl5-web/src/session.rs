@@ -11,7 +11,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, SurfaceId};
 use serde_json::Value;
 use std::sync::Arc;
-use tracking::motion::{Growing, Recording};
+use tracking::motion::{GrowingRecording, Recording};
 
 /// Name of the recording for a head that is moved on the page. The recording grows during the run.
 const LIVE: &str = "live.csv";
@@ -23,7 +23,7 @@ pub(crate) struct Session {
     /// True if all fields have been simulated.
     is_over: bool,
     /// Motion of a head that is moved on the page, otherwise `None`.
-    moves: Option<Growing>,
+    moves: Option<GrowingRecording>,
 }
 
 impl Session {
@@ -123,13 +123,13 @@ impl Session {
 
 /// Gives the experiment a head whose motion begins with a recording and grows later. The future of the motion is
 /// unknown, so prediction is refused.
-fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<Growing>), String> {
+fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<GrowingRecording>), String> {
     let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {
         return Err("a head that is moved now is not known ahead: expected head.predict=none".to_owned());
     }
     let begin = Recording::read(begin).map_err(|error| error.to_string())?;
-    let moves = Growing::new(begin);
+    let moves = GrowingRecording::new(begin);
     let head = Arc::unwrap_or_clone(head).moving(Arc::new(moves.clone()));
     Ok((experiment.head(head), Some(moves)))
 }

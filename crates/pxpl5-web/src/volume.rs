@@ -20,7 +20,7 @@ pub(crate) struct Volume {
 impl Volume {
     pub(crate) fn draw(scene: &Scene) -> Result<Self, String> {
         let config = PerspectaConfig::PAPERS;
-        let clip = SliceClip::Hyperbolic(spatialgl::DEFAULT_BIAS_PX2);
+        let clip = SliceClip::Hyperbolic(spatialgl::DEFAULT_HYPERBOLIC_BIAS_PX2);
         let display = config.swept(clip, Projection::Jittered(Jitter::new(1))).map_err(|error| error.to_string())?;
         let radius = config.width as f64 / 2.0;
         let commands = record_scene(scene, radius, true).map_err(|error| error.to_string())?;

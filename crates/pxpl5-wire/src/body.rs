@@ -61,9 +61,9 @@ impl CommandContent {
         self.words.append_words(self.part, out);
     }
 
-    /// Passes the commands that can touch their region to `out` ([`CommandWords::append_touching`]).
-    pub fn append_touching(&self, out: &mut dyn CommandSink) -> bool {
-        self.words.append_touching(self.part, out)
+    /// Passes the commands that can touch their region to `out` ([`CommandWords::append_visible`]).
+    pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
+        self.words.append_visible(self.part, out)
     }
 }
 
@@ -75,7 +75,7 @@ pub struct CopyOrder {
     /// Region context of the pixel memory that holds the region.
     pub context: u8,
     /// Path of the colours to the frame buffer.
-    pub way: CopyWay,
+    pub way: CopyPath,
     /// Data that are sent for each pixel.
     pub content: CopyContent,
     /// Port that gets a message of [`COPY_ACKNOWLEDGEMENT_WORDS`] when the last pixel has arrived.
@@ -123,15 +123,15 @@ fn packed((colour, depth): (&Word, Word)) -> Word {
 
 /// The path of a region's colours from pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum CopyWay {
+pub enum CopyPath {
     /// Directly from pixel memory. The commands that follow wait until the last pixel has arrived.
     FromPixelMemory,
     /// Into the backing store, and from there to the frame buffer while the following commands execute. The second step
     /// waits while another region of this renderer is being sent.
     ThroughBacking,
-    /// Into the backing store, where the colours stay until a [`CopyWay::FromBacking`] command of the same target.
+    /// Into the backing store, where the colours stay until a [`CopyPath::FromBacking`] command of the same target.
     IntoBacking,
-    /// From the backing store, after an earlier [`CopyWay::IntoBacking`] command of the same target.
+    /// From the backing store, after an earlier [`CopyPath::IntoBacking`] command of the same target.
     FromBacking,
 }
 
@@ -162,10 +162,10 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of a part (one message) to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the same commands to `out`; it may leave out primitives that touch no pixel of their region.
+    /// Passes the commands of a part to `out`, possibly without primitives that touch no pixel of their region.
     /// Returns true if a primitive is among the commands. `out` receives whole commands; each command that draws sets
     /// Enable first.
-    fn append_touching(&self, part: u32, out: &mut dyn CommandSink) -> bool {
+    fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
     }

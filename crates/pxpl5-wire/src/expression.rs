@@ -97,6 +97,7 @@ impl Quadratic {
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let px = x as i64;
         let py = y as i64;
+        // Horner's scheme, with wrapping sums as in the machine.
         let row = self.xx.wrapping_mul(px).wrapping_add(self.xy.wrapping_mul(py)).wrapping_add(self.x);
         let column = self.yy.wrapping_mul(py).wrapping_add(self.y);
         row.wrapping_mul(px).wrapping_add(column.wrapping_mul(py)).wrapping_add(self.one)

@@ -1,7 +1,7 @@
 //! Data on the ring: words, messages, addresses, and the number formats of expressions.
 //!
-//! This crate contains only types. Every board depends on it and no board depends on another board, so it defines
-//! everything that two boards share:
+//! This crate contains only types. Every board depends on it and no board depends on another board, so this crate
+//! defines everything that two boards share:
 //!
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
 //! - [`Body`]: the content of a message: renderer commands, pixels of a region, or words that firmware defines;
@@ -25,7 +25,7 @@ mod region;
 
 pub use body::{
     Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CommandSink,
-    CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels,
+    CommandWords, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, Message, PixelSource, RegionPixels,
     SWAP_REQUEST, read_swap_request, swap_request,
 };
 pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};

@@ -108,10 +108,12 @@ impl RegionGrid {
     /// pixels, and at most a renderer's array of them.
     #[must_use]
     pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
+        // Check the grid before any division by its sizes.
         let fits = 0 < self.width && self.width <= width && 0 < self.height && self.height <= height;
         if !fits || self.region_width == 0 || self.region_height == 0 {
             return None;
         }
+        // The product of columns and rows in a message can exceed 32 bits.
         if region.0 as u64 >= self.columns() as u64 * self.rows() as u64 {
             return None;
         }

@@ -5,7 +5,7 @@ use crate::protocol::{RegionEnd, StageOrder, Token};
 use crate::rules::{Completed, EyeDrawing};
 use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
+use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
 /// State of a renderer, as known to the master.
@@ -20,16 +20,16 @@ enum RendererUse {
 
 /// A copy that the rules permit.
 #[derive(Clone, Copy, Debug)]
-struct Copying {
+struct AllowedCopy {
     renderer: usize,
     drawing: EyeDrawing,
     region: RegionId,
-    way: CopyWay,
+    way: CopyPath,
 }
 
 /// State of RENDER of one eye.
 #[derive(Debug)]
-struct Rendering {
+struct RenderStage {
     drawing: EyeDrawing,
     /// Regions that have no renderer yet, heaviest first.
     unassigned: VecDeque<RegionId>,
@@ -59,7 +59,7 @@ struct RegionMaster {
     transformed: VecDeque<SlaveReports>,
     /// Weights of the regions, for transformed drawings that are not rendered yet.
     weights: VecDeque<Vec<u64>>,
-    rendering: Option<Rendering>,
+    rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
     /// Finished regions in the backing store of each renderer that wait for a frame buffer, oldest first.
     stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
@@ -128,16 +128,16 @@ impl RegionMaster {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
         // In order of urgency: copies, tokens, the swap, EDIT, TRANSFORM of a later eye.
-        if let Some(copying) = self.copy_that_may_begin() {
+        if let Some(copying) = self.next_allowed_copy() {
             self.copy(copying).await;
-        } else if let Some((renderer, region)) = self.region_that_may_begin() {
+        } else if let Some((renderer, region)) = self.next_allowed_region() {
             self.send_token(renderer, region).await;
         } else if self.completed.may_swap(self.next_swap) && self.completed.swapped == self.next_swap.0 {
             self.swap().await;
         } else if self.completed.may_edit(self.next_edit) {
             self.edit().await;
-        } else if self.a_later_eye_may_begin() {
-            self.allow_transform().await;
+        } else if self.later_eye_may_transform() {
+            self.permit_transform().await;
         } else {
             return false;
         }
@@ -148,21 +148,21 @@ impl RegionMaster {
         let frame = self.next_edit;
         self.next_edit = frame.next();
         self.next_transform = self.config.first_of(frame).after(1);
-        self.tell_slaves(&StageOrder::Edit(frame)).await;
+        self.send_to_slaves(&StageOrder::Edit(frame)).await;
     }
 
-    fn a_later_eye_may_begin(&self) -> bool {
+    fn later_eye_may_transform(&self) -> bool {
         let drawing = self.next_transform;
         self.config.eye_of(drawing) != SurfaceId(0) && self.completed.may_transform(drawing)
     }
 
-    async fn allow_transform(&mut self) {
+    async fn permit_transform(&mut self) {
         let drawing = self.next_transform;
         self.next_transform = drawing.after(1);
-        self.tell_slaves(&StageOrder::Transform(drawing)).await;
+        self.send_to_slaves(&StageOrder::Transform(drawing)).await;
     }
 
-    async fn tell_slaves(&self, order: &StageOrder) {
+    async fn send_to_slaves(&self, order: &StageOrder) {
         let (words, body) = order.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
@@ -178,10 +178,10 @@ impl RegionMaster {
         regions.sort_by_key(|region| std::cmp::Reverse(weights.get(*region).copied().unwrap_or(0)));
         let unassigned = regions.into_iter().map(|region| RegionId(region as u16)).collect();
         self.gp.begin(Stage::Render, self.config.frame_of(drawing), Some(self.config.eye_of(drawing)));
-        self.rendering = Some(Rendering { drawing, unassigned, tokens_out: 0 });
+        self.rendering = Some(RenderStage { drawing, unassigned, tokens_out: 0 });
     }
 
-    fn region_that_may_begin(&self) -> Option<(usize, RegionId)> {
+    fn next_allowed_region(&self) -> Option<(usize, RegionId)> {
         let region = *self.rendering.as_ref()?.unassigned.front()?;
         let renderer = self.renderers.iter().position(|state| *state == RendererUse::Idle)?;
         Some((renderer, region))
@@ -222,21 +222,21 @@ impl RegionMaster {
 
     /// Returns the first renderer's copy that the rules permit. A region in the backing store comes before one in pixel
     /// memory.
-    fn copy_that_may_begin(&self) -> Option<Copying> {
+    fn next_allowed_copy(&self) -> Option<AllowedCopy> {
         (0..self.renderers.len()).find_map(|renderer| {
             let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
-                (Some((drawing, region)), _) => (*drawing, *region, CopyWay::FromBacking),
-                (None, RendererUse::Holding(drawing, region)) => (drawing, region, CopyWay::ThroughBacking),
+                (Some((drawing, region)), _) => (*drawing, *region, CopyPath::FromBacking),
+                (None, RendererUse::Holding(drawing, region)) => (drawing, region, CopyPath::ThroughBacking),
                 _ => return None,
             };
-            self.completed.may_copy(drawing).then_some(Copying { renderer, drawing, region, way })
+            self.completed.may_copy(drawing).then_some(AllowedCopy { renderer, drawing, region, way })
         })
     }
 
     /// Sends the copy command of a region whose COPY was not permitted yet when its token was sent.
-    async fn copy(&mut self, Copying { renderer, drawing, region, way }: Copying) {
+    async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
-            CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),
+            CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),
             _ => self.renderers[renderer] = RendererUse::Idle,
         }
         let order = copy_order(&self.config, drawing, region, way);
@@ -330,7 +330,7 @@ pub(crate) fn copy_order(
     config: &RenderingControlConfig,
     drawing: EyeDrawing,
     region: RegionId,
-    way: CopyWay,
+    way: CopyPath,
 ) -> CopyOrder {
     CopyOrder {
         target: config.target(drawing, region),

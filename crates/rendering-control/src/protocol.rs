@@ -3,7 +3,7 @@
 use crate::rules::EyeDrawing;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
-use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyWay, NodeId, PictureNumber, RegionId, Word};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyPath, NodeId, PictureNumber, RegionId, Word};
 use std::sync::Arc;
 
 const SEND: Word = 1;
@@ -43,11 +43,11 @@ impl RegionEnd {
     const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
 
     /// Returns the way in the region's copy command; `None` if there is no command.
-    pub(crate) const fn way(self) -> Option<CopyWay> {
+    pub(crate) const fn way(self) -> Option<CopyPath> {
         match self {
             Self::Held => None,
-            Self::Stored => Some(CopyWay::IntoBacking),
-            Self::Copied => Some(CopyWay::ThroughBacking),
+            Self::Stored => Some(CopyPath::IntoBacking),
+            Self::Copied => Some(CopyPath::ThroughBacking),
         }
     }
 }

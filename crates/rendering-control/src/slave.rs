@@ -5,7 +5,7 @@ use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
 use pphigs::{
-    BIN_ENTRY_BYTES, Editing, FrameView, Handing, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming,
+    BIN_ENTRY_BYTES, BinHandoffWork, EditWork, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork,
     region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Received, Stage};
@@ -35,7 +35,7 @@ impl SlaveState {
     }
 
     /// Counts a token of a context. Returns true if it was the last one, so that the context is now empty.
-    fn is_emptied(&mut self, context: usize) -> bool {
+    fn count_token(&mut self, context: usize) -> bool {
         self.regions_left[context] -= 1;
         let is_last = self.regions_left[context] == 0;
         if is_last {
@@ -105,9 +105,9 @@ async fn edit(
     gp.until("leave to EDIT", || (state.borrow().next_edit > frame).then_some(())).await;
     let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
     gp.begin(Stage::Edit, frame, None);
-    gp.work(&Editing(&view)).await?;
+    gp.work(&EditWork(&view)).await?;
     gp.end(Stage::Edit, frame, None);
-    tell_master(gp, config, &StageOrder::Edited(frame)).await;
+    send_to_master(gp, config, &StageOrder::Edited(frame)).await;
     Ok(view)
 }
 
@@ -133,13 +133,13 @@ async fn transform(
     gp.begin(Stage::Transform, frame, Some(eye));
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
-    gp.work(&Transforming { passes, context, begins: true }).await?;
+    gp.work(&TransformWork { passes, context, begins: true }).await?;
     // The master sorts regions by these numbers of entries.
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
     state.borrow_mut().fill(usize::from(context), pass, config.grid().regions());
     gp.end(Stage::Transform, frame, Some(eye));
-    tell_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
+    send_to_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
     Ok(())
 }
 
@@ -206,7 +206,7 @@ async fn walk(
     // The bins of this drawing's context.
     let pass = state.borrow().bins[usize::from(context)].clone();
     let envelope = envelope(config, token);
-    let handing = pass.as_ref().map(|pass| Handing { pass, context, view: 0, region: token.region, envelope });
+    let handing = pass.as_ref().map(|pass| BinHandoffWork { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
     let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
     // Pay for the token, hand over the bin, and pass the token on in the background.
@@ -230,7 +230,7 @@ fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (No
 /// Frees a drawing's commands and bins after the tokens of all its regions.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
-    if state.borrow_mut().is_emptied(usize::from(context)) {
+    if state.borrow_mut().count_token(usize::from(context)) {
         gp.reserve(Account::Commands(context), 0, None)?;
         gp.reserve(Account::Bins(context), 0, None)?;
     }
@@ -247,7 +247,7 @@ fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
     }
 }
 
-async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrder) {
+async fn send_to_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrder) {
     let (words, body) = order.message();
     gp.send(config.master, words, body).await;
 }
@@ -261,7 +261,7 @@ mod tests {
         let mut state = SlaveState { regions_left: [3, 2], ..SlaveState::default() };
         let tokens = [(0, false), (1, false), (0, false), (0, true), (1, true)];
         for (context, is_last) in tokens {
-            assert_eq!(state.is_emptied(context), is_last, "{context}");
+            assert_eq!(state.count_token(context), is_last, "{context}");
         }
     }
 }

@@ -4,11 +4,11 @@ use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
 use pphigs::{
-    FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, ViewWordsError, copy_message, region_messages,
+    FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, ViewWordsError, copy_message, region_messages,
 };
 use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Received, Stage, Ticket};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber,
+    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyPath, Eye, FieldParity, NodeId, PeriodNumber,
     PictureNumber, Word, swap_request,
 };
 use std::cell::RefCell;
@@ -251,7 +251,7 @@ impl SlatsProcessor {
             if !self.is_alone() {
                 self.bottom_started().await;
                 self.clear(field, &view).await;
-                self.tell_others(field, &view).await;
+                self.send_to_followers(field, &view).await;
             }
             self.field(field, &view).await?;
             // COPY begins when the clumps of all GPs have been accepted.
@@ -328,7 +328,7 @@ impl SlatsProcessor {
         self.send(&passes, true).await;
     }
 
-    async fn tell_others(&self, field: PeriodNumber, view: &FrameView) {
+    async fn send_to_followers(&self, field: PeriodNumber, view: &FrameView) {
         let [low, high] = field.to_words();
         let words: Arc<[Word]> = [vec![BEGIN, low, high], view.to_words()].concat().into();
         let others = self.config.processors.iter().skip(1);
@@ -351,7 +351,7 @@ impl SlatsProcessor {
         // For each clump: TRANSFORM, then send it to its regions.
         for (i, clump) in clumps.iter().enumerate() {
             let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
-            self.gp.work(&Transforming { passes: &passes, context: 0, begins: i == 0 }).await?;
+            self.gp.work(&TransformWork { passes: &passes, context: 0, begins: i == 0 }).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
                 self.bottom_started().await;
@@ -401,7 +401,7 @@ impl SlatsProcessor {
         CopyOrder {
             target: self.config.target(bound, field, self.buffer(field)),
             context: bound.context,
-            way: CopyWay::FromPixelMemory,
+            way: CopyPath::FromPixelMemory,
             acknowledge: None,
             content: CopyContent::Colour,
         }

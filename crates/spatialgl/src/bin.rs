@@ -142,7 +142,8 @@ impl Codes {
     }
 }
 
-/// Returns (true if all of a primitive lies on the positive side, true if any of it does).
+/// Returns two booleans: the first is true if all of a primitive lies on the positive side, the second if any part of
+/// it does.
 ///
 /// With a tolerance, a primitive is on one side only if it lies strictly beyond the tolerance. A triangle in a bin
 /// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either.

@@ -37,7 +37,7 @@ pub enum SliceClip {
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
 /// Bias of the hyperbolic clip, square pixels. Assumed, 0 to 4: the square of [`DEFAULT_OFFSET_PX`].
-pub const DEFAULT_BIAS_PX2: f64 = 0.25;
+pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 
 /// Half the wedge of one slice: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl SliceClip {
         Self::ShaderPlanes,
         Self::Tapered(DEFAULT_OFFSET_PX),
         Self::Parallel(DEFAULT_OFFSET_PX),
-        Self::Hyperbolic(DEFAULT_BIAS_PX2),
+        Self::Hyperbolic(DEFAULT_HYPERBOLIC_BIAS_PX2),
     ];
 
     /// Returns the name of the method in options, tables and files.

@@ -23,7 +23,7 @@
 //! - Samples are at pixel centres, with the top-left rule on edges. There is no culling, and only the flat screen has a
 //!   depth test. Edges, near and far plane and slice volume are linear or quadratic in homogeneous window coordinates.
 //!   The pipeline therefore needs neither geometric clipping nor a division before a fragment is accepted.
-//! - [`OracleRenderer`] is the reference model. [`HostRenderer`] draws the same voxels with the same counts, eight
+//! - [`ReferenceRenderer`] is the reference model. [`HostRenderer`] draws the same voxels with the same counts, eight
 //!   pixels at a time. [`Workers`] execute batches on several threads. The hash of a volume depends neither on the
 //!   renderer nor on the threads.
 //! - A line has round ends that overlap the line. Under [`Combine::Add`] the overlapping pixels get the colour twice.
@@ -76,7 +76,7 @@ mod workers;
 
 pub use angle::sin_cos_of_turn;
 pub use bin::{BinLayout, BinRegion, BinTolerance, Binning};
-pub use clip::{DEFAULT_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
+pub use clip::{DEFAULT_HYPERBOLIC_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
 pub use command::{Combine, CommandBuffer, CommandTriangle};
 pub use context::{Context, Light, Topology, Vertex, VertexBuffer};
 pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
@@ -92,7 +92,7 @@ pub use pack::{
 };
 pub use projection::{Jitter, Projection, Size, SliceEye};
 pub use quadratic::ClipQuadratic;
-pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork, Supersampled};
+pub use raster::{Bin, Coverage, HostRenderer, ReferenceRenderer, SliceRenderer, SliceStats, SliceWork, Supersampled};
 pub use render::{Strobes, VolumeConfig, render_volume};
 pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
 pub use slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};

@@ -34,6 +34,7 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
     let all = Bin::new(commands, (0..commands.primitives() as u32).collect());
     let mut found = Connected::default();
     for (view, drawn) in display.views().iter().zip(colours) {
+        // A sample counts as shown if it lies in a drawn pixel or next to one.
         let around = Around::new(size, drawn);
         each_curve(view, commands, &all, |ends| {
             around.samples(view, ends, |_, is_shown| {
@@ -75,6 +76,7 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
         .zip(colours)
         .map(|(view, drawn)| rows_of_slice(view, commands, &all, &Around::new(size, drawn), size[1]))
         .collect();
+    // Pairs without gaps have no correlation and are left out.
     let pairs = rows.windows(2).filter_map(|pair| correlation(&pair[0], &pair[1]));
     let (sum, count) = pairs.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
     (count > 0).then(|| sum / f64::from(count))
@@ -109,6 +111,7 @@ fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
         .collect();
     let count = both.len() as f64;
     let mean = [0, 1].map(|i| both.iter().map(|pair| pair[i]).sum::<f64>() / count);
+    // Covariance of two columns, not divided by the count.
     let product = |i: usize, j: usize| both.iter().map(|pair| (pair[i] - mean[i]) * (pair[j] - mean[j])).sum::<f64>();
     let spread = (product(0, 0) * product(1, 1)).sqrt();
     (spread > 0.0).then(|| product(0, 1) / spread)

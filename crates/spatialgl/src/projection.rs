@@ -43,8 +43,8 @@ pub struct Jitter {
 }
 
 impl Jitter {
-    /// Returns the assumed jitter with a seed. The eye is 4 R away within a radius of R/2, and the shear is half a
-    /// pixel at the face.
+    /// Returns the assumed jitter with a seed. The eye is four display radii away, within a disc of half a radius. The
+    /// shear shifts points at the slab's face by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }

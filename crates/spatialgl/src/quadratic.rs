@@ -55,6 +55,7 @@ impl ClipQuadratic {
         if area == 0.0 {
             return None;
         }
+        // Cramer's rule gives the slope of the plane.
         let slope = [(s[0] * v[1] - s[1] * v[0]) / area, (u[0] * s[1] - u[1] * s[0]) / area];
         let offset = first[2] - slope[0] * first[0] - slope[1] * first[1];
         Some(Self::of_plane(slope, offset, wedge, bias))

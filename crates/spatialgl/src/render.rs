@@ -179,6 +179,7 @@ impl<'a> Volume<'a> {
     fn batches(&self, views: &'a [SliceView], first: &'a mut [u32], second: &'a mut [u32]) -> Vec<Batch<'a>> {
         let slice = words_of_slice(self.size);
         let row = (self.size[0] / 8) as usize;
+        // Each slice of the second half mirrors the slice with the same index in the first half.
         let mut turned = second.chunks_mut(slice);
         let mut words = first.chunks_mut(slice).map(|own| SliceWords { own, turned: turned.next(), row });
         let batches = views.chunks(self.config.tiling.batch as usize).map(|views| Batch {
@@ -312,6 +313,7 @@ fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let width = image.size()[0];
     let mut samples = Vec::new();
     for (at, byte) in (0u32..).zip(&image.stencil).filter(|(_, byte)| **byte != 0) {
+        // Visit the marked pixels of a byte of the stencil.
         let mut rest = *byte;
         while rest != 0 {
             let pixel = at * 8 + rest.trailing_zeros();

@@ -36,7 +36,7 @@ impl SliceView {
     }
 
     /// Returns the same view for an image with `factor` samples along each side of a pixel.
-    pub(crate) fn magnified(&self, factor: u32) -> Self {
+    pub(crate) fn supersampled_view(&self, factor: u32) -> Self {
         let factor = f64::from(factor);
         let mut view = self.clone();
         for row in &mut view.window[..2] {

@@ -18,7 +18,7 @@ fn drawn(commands: &CommandBuffer, samples: u32, inner: &'static str) -> VolumeF
     let config = VolumeConfig { keeps_colours: true, ..half(VolumeConfig::paper()) };
     let display = swept(SliceClip::ShaderPlanes, Projection::Orthographic);
     let renderer: Box<dyn SliceRenderer> = match inner {
-        "oracle" => Box::new(Supersampled::new(OracleRenderer, samples).expect("4 or 16")),
+        "oracle" => Box::new(Supersampled::new(ReferenceRenderer, samples).expect("4 or 16")),
         _ => Box::new(Supersampled::new(HostRenderer, samples).expect("4 or 16")),
     };
     render_volume(&display, commands, &config, renderer.as_ref(), &OneThread).expect("valid")

@@ -1,7 +1,9 @@
 //! The rig measures from outside the latencies that were put in.
 
 use tracking::motion::Motion;
-use tracking::rig::{Detection, InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace, Sighting};
+use tracking::rig::{
+    Detection, InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace,
+};
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel};
 
@@ -23,7 +25,7 @@ fn place_ps(rig: &PendulumRig) -> u64 {
 /// Returns the passes by the time stamps of a system whose time stamps are correct.
 fn inside(rig: &PendulumRig, tracker: &TrackerModel, passes: usize) -> Vec<InsidePass> {
     let sightings = rig.sightings(tracker, 1, passes).unwrap();
-    let pass = |sighting: Sighting| {
+    let pass = |sighting: LowPointReport| {
         let started_ps = sighting.arrives_ps;
         InsidePass { sighting, started_ps, shown_ps: pipeline(started_ps) }
     };
@@ -184,7 +186,7 @@ fn an_error_of_one_side_is_found_by_the_other() {
     let place_too_late = place_ps(&rig) as i64 + 6 * PS_PER_MS as i64;
     assert!(!agree(&scope, shifted(place_too_late)));
     let measured = rig.compare(&tracker, place_ps(&rig), &scope, shifted(place_too_late)).unwrap();
-    assert!(measured.counted_in_the_scan(place_ps(&rig) + 6 * PS_PER_MS).agrees());
+    assert!(measured.with_frames_counted_in_scan(place_ps(&rig) + 6 * PS_PER_MS).agrees());
     // The pipeline counts a field too few, or stamps its start 20 ms late.
     assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
     let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };

@@ -43,7 +43,7 @@ enum Stage {
 
 /// A pixel that leaves the last stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LitPixel {
+pub struct OutputPixel {
     /// Column and line in the frame.
     pub pixel: [u32; 2],
     /// Displayed colour, 0x00RRGGBB.
@@ -54,7 +54,7 @@ pub struct LitPixel {
 
 /// The pipeline between the beam and the display memories, register by register.
 #[derive(Clone, Debug)]
-pub struct LiteralPipeline {
+pub struct ReferencePipeline {
     table: LensTable,
     unit: AddressUnit,
     composition: Composition,
@@ -65,7 +65,7 @@ pub struct LiteralPipeline {
     inside: VecDeque<Option<Registers>>,
 }
 
-impl LiteralPipeline {
+impl ReferencePipeline {
     /// Creates an empty pipeline with a table of viewing vectors.
     #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
@@ -105,7 +105,7 @@ impl LiteralPipeline {
         entering: Option<([u32; 2], MatrixWords)>,
         memories: &[BankedMemory],
         background: Option<&BankedMemory>,
-    ) -> Option<LitPixel> {
+    ) -> Option<OutputPixel> {
         // Shift all pixels by one stage.
         self.inside.push_front(entering.map(|(pixel, matrix)| Registers::of(pixel, matrix)));
         self.inside.truncate(self.stages.len());
@@ -118,7 +118,7 @@ impl LiteralPipeline {
         }
         let last = self.inside.back()?.as_ref()?;
         let colour = output::lit(&self.composition, last, memories);
-        last.footprint.map(|footprint| LitPixel { pixel: last.pixel, colour, footprint })
+        last.footprint.map(|footprint| OutputPixel { pixel: last.pixel, colour, footprint })
     }
 
     fn work(

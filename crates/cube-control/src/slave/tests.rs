@@ -219,6 +219,6 @@ fn a_context_is_empty_when_all_tokens_of_its_update_have_been_here_and_can_be_fi
     let mut state = SlaveState::default();
     let tokens = [(0, 3, false), (1, 2, false), (0, 3, false), (0, 3, true), (1, 2, true)];
     for (context, of, is_last) in tokens.into_iter().chain(tokens) {
-        assert_eq!(state.is_emptied(context, of), is_last, "{context}");
+        assert_eq!(state.count_token(context, of), is_last, "{context}");
     }
 }

@@ -50,6 +50,7 @@ impl Rule {
 
 /// Returns all broken rules that make a program wrong, as source line and reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
+    // Rules of single instructions first, then of slots, then of pairs.
     let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
     let bla = program.iter().filter(|(.., i)| same(i));
     let mut faults: Vec<(usize, String)> =
@@ -72,11 +73,11 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
 /// Number of operations pushed into a pipe since the last scalar operation; `None` if the contents of the pipe are
 /// unknown.
 #[derive(Clone, Copy, Default)]
-struct Refilled(Option<usize>);
+struct PipeFill(Option<usize>);
 
-impl Refilled {
-    /// Returns true if the result that now leaves a pipe of this many stages was destroyed by the scalar operation.
-    fn has_lost(self, stages: usize) -> bool {
+impl PipeFill {
+    /// Returns true if a scalar operation has destroyed the result that leaves next from a pipe of this many stages.
+    fn is_result_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
 
@@ -111,6 +112,7 @@ impl PipeUse {
     }
 
     fn of_dual_operation(i: &Instruction) -> PipeUse {
+        // The destination receives the adder's result, or the multiplier's for pfmam and pfmsm.
         let to_adder = i.has(Flags::PIPELINED);
         let route = &(if to_adder { &ROUTES } else { &MULTIPLIER_ROUTES })[(i.imm & 15) as usize];
         let uses = |source| route.multiplier.contains(&source) || route.adder.contains(&source);
@@ -124,17 +126,17 @@ impl PipeUse {
 /// a straight run.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
-    let mut pipes = [Refilled::default(); 2];
+    let mut pipes = [PipeFill::default(); 2];
     for (address, line, i) in program {
         // The contents of the pipes are unknown after a jump.
         if labels.contains(address) || i.is_branch() {
-            pipes = [Refilled::default(); 2];
+            pipes = [PipeFill::default(); 2];
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
         // A multiply of doubles uses two stages only, except `pfmul3`.
         for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
-            if used.takes[unit] && pipes[unit].has_lost(stages) {
+            if used.takes[unit] && pipes[unit].is_result_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
                 faults.push((
                     *line,
@@ -145,7 +147,7 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
                 pipes[unit].push();
             }
             if used.scalar[unit] {
-                pipes[unit] = Refilled(Some(0));
+                pipes[unit] = PipeFill(Some(0));
             }
         }
     }
@@ -171,9 +173,11 @@ fn alone(address: u32, i: &Instruction) -> Option<(Rule, &'static str)> {
 
 fn slot(two: &[Located]) -> Option<(usize, String)> {
     let [(at, _, branch), (next, line, i)] = two else { return None };
+    // Only the instruction right after a delayed branch is its slot.
     if *next != at.wrapping_add(4) || !branch.is_delayed_branch() || at % 8 == 4 && i.is_floating() {
         return None;
     }
+    // A call writes the return address to r1 before its slot executes.
     let call = matches!(branch.op, Op::Call | Op::Calli);
     match () {
         () if i.is_branch() => Some((*line, "a branch in the slot of a delayed branch".to_owned())),

@@ -67,6 +67,7 @@ impl Parser<'_> {
     }
 
     fn binary(&mut self, level: usize) -> Result<i64, String> {
+        // Operators of one level are evaluated from left to right.
         let operators = LEVELS.get(level).copied().unwrap_or(PRODUCTS);
         let mut value = self.operand(level)?;
         while let Some(operator) = operators.iter().find(|o| self.take(o)) {
@@ -81,6 +82,7 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self) -> Result<i64, String> {
+        // Nesting is limited, because each level takes stack space.
         self.depth += 1;
         if self.depth > DEPTH {
             return Err("expression nested too deeply".to_owned());
@@ -95,6 +97,7 @@ impl Parser<'_> {
             () if self.take("-") => Ok(self.unary()?.wrapping_neg()),
             () if self.take("+") => self.unary(),
             () if self.take("~") => Ok(!self.unary()?),
+            // `ha%` is rounded, because the low half that is added later is signed.
             () if self.take("ha%") => self.unary().map(|v| v.wrapping_add(0x8000) >> 16 & 0xFFFF),
             () if self.take("h%") => self.unary().map(|v| v >> 16 & 0xFFFF),
             () if self.take("l%") => self.unary().map(|v| v & 0xFFFF),

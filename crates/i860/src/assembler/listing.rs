@@ -40,6 +40,7 @@ impl Program {
             rows.row(address, &format!("{word:08x}"), &disassemble(word, address), line);
         }
         data.iter().for_each(|data| rows.data(self, data));
+        // List the labels after the last row.
         rows.labels_before(u32::MAX);
         rows.text
     }
@@ -84,6 +85,7 @@ impl Rows<'_> {
 
     fn data(&mut self, program: &Program, data: &Data) {
         let end = data.address.wrapping_add(data.bytes);
+        // Data are listed by words, doubles by 8 bytes.
         let step = match data.kind {
             DataKind::Gap => return self.row(data.address, "", &format!(".space {}", data.bytes), data.line),
             DataKind::Doubles => 8,

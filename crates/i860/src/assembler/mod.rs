@@ -119,9 +119,11 @@ impl Program {
 pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErrors> {
     let empty = Program::of_bytes(base, Vec::new());
     sources.iter().try_fold(empty, |mut all, (file, source)| {
+        // The next source begins at a new cache line.
         all.bytes.resize(all.bytes.len().next_multiple_of(32), 0);
         let next = assemble(file, base + all.bytes.len() as u32, source)?;
         all.bytes.extend(next.bytes);
+        // Keep the first definition of each symbol.
         next.symbols.into_iter().for_each(|(name, value)| {
             all.symbols.entry(name).or_insert(value);
         });
@@ -207,6 +209,7 @@ struct Assembler<'a> {
 /// assert_eq!(program.symbol("loop"), Some(0x1000));
 /// ```
 pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, AssemblyErrors> {
+    // First pass: expand macros, define labels and reserve memory.
     let lines = source::expand(file, source).map_err(|e| AssemblyErrors(vec![e]))?;
     let mut assembler = Assembler {
         file,
@@ -217,6 +220,7 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
         placed: Vec::new(),
         errors: Vec::new(),
     };
+    // An error in one line does not stop the pass, so that all errors are reported.
     for line in &lines {
         if let Err(reason) = assembler.place(line) {
             assembler.fault(line.number, reason);
@@ -256,6 +260,7 @@ fn one(word: &str, operands: &str) -> Instructions {
 
 /// Replaces a pseudo-operation by real instructions; `None` for other operations.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
+    // Split off the D prefix and the p of pipelined moves.
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
     let (pipe, name) = name.strip_prefix('p').filter(|n| n.starts_with("fmov")).map_or(("", name), |n| ("p", n));
     let parts = operand::split(operands);
@@ -265,9 +270,11 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
             Some(Err(format!("`nop` takes no operand, found {} (`{operands}`)", found.len())))
         }
         ("mov", [from, to]) if prefix.is_empty() => Some(mov(from, to)),
+        // Moves without conversion are additions of f0 in the graphics unit.
         ("fmov.ss" | "fmov.dd", [from, to]) => {
             Some(one(&format!("{prefix}{pipe}fiadd{}", &name[4..]), &format!("{from}, f0, {to}")))
         }
+        // Moves with conversion go through the adder.
         ("fmov.sd" | "fmov.ds", [from, to]) => {
             Some(one(&format!("{prefix}{pipe}famov{}", &name[4..]), &format!("{from}, {to}")))
         }
@@ -311,10 +318,12 @@ impl Assembler<'_> {
     // Defines the symbols of a line and appends its instruction or data to the program.
     fn place(&mut self, line: &Line) -> Result<(), String> {
         let (label, statement) = split_label(&line.text);
+        // A label has the address of the code or data after it.
         if let Some(label) = label {
             self.define(label, i64::from(self.here))?;
             self.labels.push((label.to_owned(), self.here));
         }
+        // Constants are evaluated at once, so they may use only earlier names.
         if let Some((name, value)) = statement.split_once('=').filter(|(name, _)| is_name(name.trim())) {
             let value = evaluate(value, &self.symbols)?;
             return self.define(name.trim(), value);
@@ -328,6 +337,7 @@ impl Assembler<'_> {
     }
 
     fn push(&mut self, line: usize, item: Item, bytes: u32) -> Result<(), String> {
+        // Check the size first, so that a huge gap allocates no memory.
         let used = self.here.wrapping_sub(self.base);
         if used.checked_add(bytes).is_none_or(|total| total > MOST_BYTES) {
             return Err(format!("the program is longer than {MOST_BYTES} bytes"));
@@ -349,9 +359,11 @@ impl Assembler<'_> {
     }
 
     fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
+        // The number of values gives the size; their values follow in the second pass.
         let count = operand::split(rest).len() as u32;
         let values = rest.to_owned();
         match word {
+            // Directives for sections, exports and file names have no effect.
             ".text" | ".data" | ".globl" | ".file" => Ok(()),
             ".equ" | ".set" => {
                 let (name, value) = rest.split_once(',').ok_or_else(|| format!("{word} needs a name and a value"))?;
@@ -424,6 +436,7 @@ impl Assembler<'_> {
         let mut bytes = Vec::new();
         match &placed.item {
             Item::Instruction { template, operands } => {
+                // Labels are known now, so the operands can be evaluated.
                 let filler = Filler { i: *template, pc: placed.address, symbols: &self.symbols };
                 let i = filler.fill(&operand::split(operands))?;
                 return Ok((encode(&i).to_le_bytes().to_vec(), Some(i)));
@@ -432,6 +445,7 @@ impl Assembler<'_> {
                 for text in operand::split(values) {
                     let value = evaluate(text, &self.symbols)?;
                     let bits = 8 * size;
+                    // Both signed and unsigned values of this size are allowed.
                     if !(-(1 << (bits - 1))..1 << bits).contains(&value) {
                         return Err(format!("{value} does not fit {bits} bits"));
                     }

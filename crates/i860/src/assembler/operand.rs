@@ -9,6 +9,7 @@ pub(super) fn split(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut depth = 0i32;
     let mut start = 0;
+    // Commas inside parentheses belong to an expression.
     for (at, c) in text.char_indices() {
         match c {
             '(' => depth += 1,
@@ -20,6 +21,7 @@ pub(super) fn split(text: &str) -> Vec<&str> {
             _ => {}
         }
     }
+    // An empty text has no operands, not one empty operand.
     let last = text[start..].trim();
     if !(parts.is_empty() && last.is_empty()) {
         parts.push(last);
@@ -48,6 +50,7 @@ fn need_integer(text: &str) -> Result<u8, String> {
 /// Parses a floating-point register for an operand of `bytes` bytes.
 fn need_floating(text: &str, bytes: u8) -> Result<u8, String> {
     let n = register_number(text, 'f').ok_or_else(|| format!("expected a floating-point register, found `{text}`"))?;
+    // A pair or quad must begin at a multiple of its length.
     let registers = (bytes / 4).max(1);
     if n % registers == 0 {
         return Ok(n);
@@ -165,6 +168,7 @@ impl Filler<'_> {
     fn integer(&mut self, a: &str, b: &str, d: &str) -> Result<(), String> {
         self.i.src2 = need_integer(b)?;
         self.i.dest = need_integer(d)?;
+        // Operations on the high half exist only with an immediate.
         let high = matches!(self.i.op, Op::Andh | Op::Andnoth | Op::Orh | Op::Xorh);
         if let Some(n) = integer_register(a) {
             if high {
@@ -178,6 +182,7 @@ impl Filler<'_> {
         }
         self.i.flags = self.i.flags.with(Flags::IMMEDIATE, true);
         self.i.src1 = 0;
+        // Logical operations take unsigned immediates, others signed ones.
         let logical = self.i.op >= Op::And;
         self.i.imm =
             if logical { in_range(evaluate(a, self.symbols)?, 0, 0xFFFF)? } else { signed16(a, self.symbols)? };
@@ -199,6 +204,7 @@ impl Filler<'_> {
     /// Converts a branch target to a word offset of `bits` bits.
     fn offset(&self, target: &str, bits: u32) -> Result<i32, String> {
         let address = evaluate(target, self.symbols)? as u32;
+        // Offsets count words from the instruction after the branch.
         let distance = address.wrapping_sub(self.pc).wrapping_sub(4) as i32;
         if distance % 4 != 0 {
             return Err(format!("branch target {address:#x} is not a multiple of 4"));
@@ -225,6 +231,7 @@ impl Filler<'_> {
             Some(rest) => (rest.trim_end(), true),
             None => (text, false),
         };
+        // Only floating-point accesses and flush have auto-increment.
         let can_increment = self.i.size != 0 || self.i.op == Op::Flush;
         if increment && !can_increment {
             return Err(format!("`{text}`: only fld, fst, pfld, pst and flush increment"));

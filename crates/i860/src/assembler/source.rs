@@ -26,12 +26,12 @@ struct Budget {
     /// Source line that is being expanded, and the budget before it.
     current: (usize, usize),
     /// Earlier source line that has used most of the budget, and its use.
-    greediest: (usize, usize),
+    largest_user: (usize, usize),
 }
 
 impl Budget {
     const fn new() -> Self {
-        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), greediest: (0, 0) }
+        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
     /// Returns the remaining budget as one number, with steps scaled to bytes.
@@ -41,21 +41,22 @@ impl Budget {
 
     /// Starts to count the budget that a new source line uses.
     fn begin(&mut self, line: usize) {
-        self.greediest = self.greediest();
+        self.largest_user = self.largest_user();
         self.current = (line, self.left());
     }
 
-    fn greediest(&self) -> (usize, usize) {
+    fn largest_user(&self) -> (usize, usize) {
         let (line, before) = self.current;
         let taken = before - self.left().min(before);
-        if taken > self.greediest.1 { (line, taken) } else { self.greediest }
+        if taken > self.largest_user.1 { (line, taken) } else { self.largest_user }
     }
 
     fn take(&mut self, steps: usize, text: usize) -> Result<(), AssemblyFault> {
+        // Both limits count down; the first one that is exceeded stops the expansion.
         let enough = steps <= self.steps && text <= self.text;
         self.steps = self.steps.saturating_sub(steps);
         self.text = self.text.saturating_sub(text);
-        if enough { Ok(()) } else { Err((self.greediest().0, spent())) }
+        if enough { Ok(()) } else { Err((self.largest_user().0, spent())) }
     }
 }
 
@@ -136,6 +137,7 @@ impl Expander<'_> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {
             let word = first_word(&line.text).0;
+            // A nested block of the same kind adds one level.
             depth += i32::from(word == open) - i32::from(word == close);
             if depth == 0 {
                 self.take(n, 0)?;
@@ -163,6 +165,7 @@ impl Expander<'_> {
         if depth >= MOST_DEPTH {
             return Err(self.error(lines[0].number, format!("repetitions and macros nest deeper than {MOST_DEPTH}")));
         }
+        // An empty body needs no repetition, whatever its count.
         let count = if len == 1 { 0 } else { count };
         for _ in 0..count {
             self.take(1, 0)?;
@@ -190,6 +193,7 @@ impl Expander<'_> {
         if depth >= MOST_DEPTH {
             return Err(self.error(line, format!("macro {name} calls itself, or macros nest deeper than {MOST_DEPTH}")));
         }
+        // Every parameter needs an argument.
         if arguments.len() != called.parameters.len() {
             let expected = called.parameters.len();
             let found = arguments.len();
@@ -215,6 +219,7 @@ impl Expander<'_> {
 fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str, most: usize) -> Option<String> {
     let mut result = String::new();
     let mut rest = text;
+    // Copy the text up to each backslash, then replace the name after it.
     while let Some(at) = rest.find('\\') {
         result.push_str(&rest[..at]);
         rest = &rest[at + 1..];

@@ -2,8 +2,9 @@
 //!
 //! A *linear stretch* of an assembler source lies between `.linear` and `.endlinear`. Each of its lines computes a
 //! value from other values, by the name of an operation without its pipe. [`schedule`] replaces the stretch by pairs of
-//! a floating-point and a core instruction. It chooses the order, fills and drains the pipes of adder and multiplier,
-//! and assigns registers. The operations and their operands stay as written, so results do not depend on the order.
+//! a floating-point and a core instruction. The scheduler chooses the order, fills and drains the pipes of adder and
+//! multiplier, and assigns registers. The operations and their operands stay as written, so results do not depend on
+//! the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -86,6 +87,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     stretches(
         source,
         |operations, pairs| {
+            // A multiply of doubles takes two slots.
             let floating = operations.iter().filter(|operation| operation.name.unit.is_floating());
             let doubles = floating
                 .clone()
@@ -130,9 +132,11 @@ fn stretches(
     while let Some((line, text)) = lines.next() {
         let words: Vec<&str> = text.split_whitespace().collect();
         match words.as_slice() {
+            // A pool applies to all stretches after it.
             [".pool", registers @ ..] => pool = parse::pool(line, registers)?,
             [".linear", parameters @ ..] => {
                 let settings = parse::settings(line, parameters)?;
+                // A stretch goes up to the end directive.
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
                 let pairs =

@@ -93,6 +93,7 @@ fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, LinearError
         match words.as_slice() {
             [] => {}
             ["for", variable, values @ ..] => {
+                // Find the `endfor` of this loop, then write its body out for each value.
                 let end = at
                     + matching_end(&lines[at..])
                         .ok_or_else(|| LinearError { line: *line, reason: "`for` without `endfor`".to_owned() })?;
@@ -165,6 +166,7 @@ impl Parser {
 
     fn operation(&self, line: usize, name: Name, operands: &str, awaited: &[&str]) -> Result<Operation, LinearError> {
         let mut operands: Vec<&str> = operands.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
+        // The address is the last operand.
         let address = match name.addresses {
             true => Some(self.address(line, operands.pop().unwrap_or_default())?),
             false => None,
@@ -173,6 +175,7 @@ impl Parser {
             return error(line, format!("expected {} sources, found {}", name.sources, operands.len()));
         }
         let sources = operands.iter().map(|text| self.source(line, text)).collect::<Result<_, _>>()?;
+        // Marks name earlier stores.
         let marked = |mark: &&str| match self.marks.get(*mark) {
             Some(n) => Ok(*n),
             None => error(line, format!("no store is marked `{mark}`")),
@@ -188,6 +191,7 @@ impl Parser {
     }
 
     fn source(&self, line: usize, text: &str) -> Result<Source, LinearError> {
+        // A part after a dot selects one register of a value.
         let (name, part) = match text.rsplit_once('.') {
             Some((name, part)) => (name, part.parse().ok()),
             None => (text, None),
@@ -199,6 +203,7 @@ impl Parser {
             }
             return Ok(Source::Value(*n, part));
         }
+        // Other sources are registers, or constants in capitals or digits.
         let register = integer_register(text).is_some();
         let constant = text.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c.is_ascii_uppercase());
         match register || constant || text == "f0" {

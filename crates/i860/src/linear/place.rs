@@ -62,11 +62,13 @@ impl File {
 
     /// Returns the first of `count` free registers. Values of one or two registers prefer gaps beside registers in use.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
+        // Values of two and four registers begin at a multiple of their length.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
         let mut starts = (0..32).step_by(count).filter(fits);
         let start = match count {
             1 => {
                 let all: Vec<usize> = starts.collect();
+                // Prefer a register whose neighbour is in use, to keep pairs free.
                 let lonely = all.iter().copied().find(|n| !self.is_free(n ^ 1, now));
                 lonely.or_else(|| all.first().copied())
             }
@@ -122,6 +124,7 @@ struct Placer<'a> {
 impl<'a> Placer<'a> {
     fn new(operations: &'a [Operation], pool: &[u8], settings: Settings) -> Placer<'a> {
         let mut uses_left = vec![0; operations.len()];
+        // Count the reads of each value; its registers are free after the last one.
         operations.iter().flat_map(Operation::reads).for_each(|n| uses_left[n] += 1);
         Placer {
             operations,
@@ -164,7 +167,7 @@ impl<'a> Placer<'a> {
             }
             pairs.push((floating, core));
             self.now += 1;
-            self.move_on();
+            self.skip_issued();
         }
         Ok(pairs)
     }
@@ -174,7 +177,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Advances [`Placer::first`] past the lines that have issued.
-    fn move_on(&mut self) {
+    fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
         }
@@ -183,6 +186,7 @@ impl<'a> Placer<'a> {
     // ---- choice of the next operation
 
     fn candidates(&self, floating: bool) -> Vec<usize> {
+        // Only operations in the window can issue, the most urgent one first.
         let window = self.first..self.operations.len().min(self.first + self.settings.window);
         let mut all: Vec<usize> = window
             .filter(|n| self.issued[*n].is_none() && self.operations[*n].name.unit.is_floating() == floating)
@@ -194,6 +198,7 @@ impl<'a> Placer<'a> {
 
     fn can_issue(&self, n: usize, is_oldest: bool) -> bool {
         let operation = &self.operations[n];
+        // A load after a marked store waits two clocks for it.
         let awaited = operation.after.iter().all(|store| self.issued[*store].is_some_and(|at| at + 2 <= self.now));
         awaited
             && operation.reads().all(|value| self.is_ready(value))
@@ -208,6 +213,7 @@ impl<'a> Placer<'a> {
     fn unit_accepts(&self, n: usize) -> bool {
         let operation = &self.operations[n];
         let base_is_command = matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18");
+        // A load right after a store would freeze (row 17).
         let follows_store = self.last_store.is_some_and(|at| at + 1 == self.now);
         match operation.name.unit {
             Unit::Adder => self.can_push(&self.adder, STAGES, None),
@@ -279,10 +285,11 @@ impl<'a> Placer<'a> {
         if width == Width::Integer {
             let spare = self.spare(n);
             return self.operations[n].register.is_some()
-                || self.frees_integer(n)
+                || self.is_last_integer_use(n)
                 || self.integers.free(self.now) > spare;
         }
         let piped = matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. });
+        // Values in the pipes will need registers too.
         let coming: usize =
             self.adder.iter().chain(&self.multiplier).flatten().map(|value| self.width(*value).registers()).sum();
         let free = self.floats.free(self.now);
@@ -314,6 +321,7 @@ impl<'a> Placer<'a> {
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
+        // Compare both pipes; a pipe without values is not drained.
         let adder = (self.urgency(&self.adder), Unit::Adder, self.can_push(&self.adder, STAGES, None));
         let free = self.multiplier_free <= self.now;
         let multiplier = (
@@ -388,6 +396,7 @@ impl<'a> Placer<'a> {
             "pfsub.ss" => "ra1s2.ss",
             _ => return mnemonic,
         };
+        // The push must move values and must not drop a result.
         let waits = self.multiplier.iter().any(Option::is_some) && self.multiplier[0].is_none();
         if self.multiplies_double || !waits || self.multiplier_free > self.now {
             return mnemonic;
@@ -432,6 +441,7 @@ impl<'a> Placer<'a> {
     fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
         let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
         self.multiplies_double = double;
+        // The oldest value leaves, and the new one enters at the end.
         let leaving = self.multiplier.remove(at);
         self.multiplier.push(n);
         if double {
@@ -475,7 +485,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns true if an integer operation is the last to read one of its sources.
-    fn frees_integer(&self, n: usize) -> bool {
+    fn is_last_integer_use(&self, n: usize) -> bool {
         let mut read = self.operations[n].reads();
         self.operations[n].name.unit == Unit::Integer
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
@@ -532,12 +542,13 @@ impl<'a> Placer<'a> {
     }
 
     /// Records the issue of an operation and frees the registers that it is the last to read.
-    /// They are free from the next clock on, or one clock later after a store (row 24).
+    /// The registers are free from the next clock on, or one clock later after a store (row 24).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
             self.places[n] = Place::InPipe;
         }
+        // A stored register is free one clock later (row 24).
         let stores = self.operations[n].name.unit == Unit::Store;
         let from = self.now + if stores { 2 } else { 1 };
         let read: Vec<usize> = self.operations[n].reads().collect();
@@ -564,10 +575,12 @@ fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);
     for n in (0..operations.len()).rev() {
+        // A fixed generator makes the noise, so that schedules are reproducible.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let noise = if shake == 0 { 0 } else { (state >> 40) as u32 % (6 << (shake % 4)) };
         heights[n] += operations[n].name.latency + noise;
         let height = heights[n];
+        // Sources are at least as urgent as the operations that read them.
         for before in operations[n].reads().chain(operations[n].after.iter().copied()) {
             heights[before] = heights[before].max(height);
         }

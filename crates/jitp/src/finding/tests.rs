@@ -2,14 +2,14 @@
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window, interpolated};
-use crate::finding::Finding;
+use crate::finding::StripSearchWork;
 use crate::pieces::{messages, window};
 use crate::timing::JitpTiming;
 use crate::whole::{WholeList, picture};
 use glam::{Mat4, Vec3};
 use pphigs::{
-    DisplayList, DisplayStructure, EyeView, FrameView, MemoryPart, ModelEdit, ModelFrame, SearchOutput, Searching,
-    Share, TransformCost,
+    DisplayList, DisplayStructure, EyeView, FrameView, MemoryPart, ModelEdit, ModelFrame, SearchOutput, Share,
+    TransformCost, WindowSearchWork,
 };
 use pxpl5_display::Aim;
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
@@ -216,7 +216,7 @@ impl Scene {
             self.drawn.triangle_commands(window, |_| commands += 1);
             assert_eq!(commands, counts.triangles, "as many are drawn as are counted: {window:?}");
         }
-        let searching = Searching {
+        let searching = WindowSearchWork {
             part: self.part,
             viewport: self.viewport,
             grid: self.config.grid(),
@@ -370,10 +370,11 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
         let parts = [scene.part, MemoryPart::of(4, 5)];
         let interpolating = drawn.interpolating(&scene.share, &windows, picture(scene.viewport, config.layout), parts);
         let viewport = scene.viewport;
-        let searching = Searching { part: parts[1], viewport, grid: config.grid(), windows: &regions, counts: &counts };
+        let searching =
+            WindowSearchWork { part: parts[1], viewport, grid: config.grid(), windows: &regions, counts: &counts };
         let (timing, processor) = (&GpTiming::PAPERS, &mut scene.processor);
         if is_one_work {
-            let finding = Finding { searching, interpolating, met, interpolate_ns: 0 };
+            let finding = StripSearchWork { searching, interpolating, met, interpolate_ns: 0 };
             return finding.by_code(timing, processor).expect("it returns");
         }
         let interpolated = interpolating.expect("between two views").run_code(timing, processor).expect("it returns");

@@ -7,7 +7,7 @@ use pxpl5_gp::{CodeVersion, GpBoard};
 
 #[test]
 fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
-    let mut flight = Flight::new(2, 3);
+    let mut flight = OrderTimes::new(2, 3);
     // A pass has three orders. The pairs give the slave and the time of each order.
     let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
     let expected = [(0, 0), (0, 0), (60, 0), (160, 160), (140, 270), (240, 240)];

@@ -244,7 +244,12 @@ impl Bench {
     }
 
     /// Creates a bench for a view other than the one of the reports.
-    pub(crate) fn in_view(kernel: Kernel, view: &ViewTransform, viewport: Viewport, triangles: &[Triangle]) -> Bench {
+    pub(crate) fn in_eye_space(
+        kernel: Kernel,
+        view: &ViewTransform,
+        viewport: Viewport,
+        triangles: &[Triangle],
+    ) -> Bench {
         let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         Bench::over(kernel, view, viewport, Config::functional(), &data, triangles.len())
     }

@@ -1,7 +1,7 @@
 //! The figures as a Markdown document.
 
 use super::definitions::{SEGMENTS, definitions};
-use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, SizeLimit, Slowed, Walked};
+use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
 use super::fit::RATES_HZ;
 use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
 use super::row::{Row, Standing};
@@ -308,7 +308,7 @@ fn walks(text: &mut String, all: &Experiments) {
     all.walks.iter().for_each(|walked| walk_line(text, walked));
 }
 
-fn walk_line(text: &mut String, walked: &Walked) {
+fn walk_line(text: &mut String, walked: &NamedWalk) {
     let report = &walked.report;
     let joined = |numbers: Vec<String>| numbers.join(", ");
     let rates = joined(report.memories.iter().map(|memory| format!("{:.2}", memory.updates_hz)).collect());
@@ -339,7 +339,7 @@ fn slowed(text: &mut String, all: &Experiments) {
         "\n## E8: a renderer that is too slow\n\nThe torn walk, 1,800 frames; memories are served in rising order. Rotation is looked up in what is shown, however old:\n\
          its error does not know the renderer.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
-    for Slowed { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
+    for SlowRendererResult { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
         let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();
         let missed: Vec<String> = missed.iter().map(u64::to_string).collect();
         let _ = writeln!(text, "| {rate:.0} | {} | {} |", rates.join(", "), missed.join(", "));

@@ -21,7 +21,7 @@ pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
 /// Settings and results of one walk of an experiment.
 #[derive(Clone, Debug)]
-pub struct Walked {
+pub struct NamedWalk {
     /// Name in tables and documents.
     pub name: &'static str,
     pub settings: Settings,
@@ -42,7 +42,7 @@ pub struct Fit {
 
 /// Results with a renderer of limited speed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Slowed {
+pub struct SlowRendererResult {
     /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
     /// Updates per second of each memory.
@@ -63,9 +63,9 @@ pub struct Experiments {
     /// Number of segments of the gallery with the fitted cells.
     pub segments: usize,
     /// Four walks with the fitted cells: cut and torn, cut and warped, uncut, and warped without cascade.
-    pub walks: Vec<Walked>,
+    pub walks: Vec<NamedWalk>,
     /// Walks with slower and slower renderers.
-    pub slowed: Vec<Slowed>,
+    pub slowed: Vec<SlowRendererResult>,
     /// Factors by which draws of point objects fall: 4 memories at 1 m/s, and 5 memories at 0.37 m/s.
     pub reductions: [f64; 2],
     /// Deciding component of validity, by size over distance.
@@ -115,7 +115,7 @@ impl Experiments {
         for (name, settings) in kinds {
             let tally = walk(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0))?;
             let report = Report::of(&world, &settings, &tally, None);
-            walks.push(Walked { name, settings, tally, report });
+            walks.push(NamedWalk { name, settings, tally, report });
         }
         Ok(Self {
             segments: world.segments.len(),
@@ -135,13 +135,13 @@ impl Experiments {
 }
 
 /// Repeats the torn walk with slower and slower renderers.
-fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>, ExperimentError> {
+fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, ExperimentError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
         let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };
         let tally = walk(world, &settings, 1_800, at_frames(path, 1.0, 60.0))?;
         let missed = tally.memories.iter().map(|memory| memory.missed).collect();
-        all.push(Slowed { triangles_per_s, rates_hz: tally.rates_hz(60.0), missed });
+        all.push(SlowRendererResult { triangles_per_s, rates_hz: tally.rates_hz(60.0), missed });
     }
     Ok(all)
 }
@@ -192,7 +192,7 @@ pub fn size_rows() -> Vec<SizeRow> {
 fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     let radius = size * 10.0 / 2.0;
     let rules = [SizeRule::Disc, SizeRule::Sphere];
-    let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.way_of_size(10.0, radius));
+    let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.max_approach(10.0, radius));
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
@@ -220,14 +220,14 @@ pub fn size_limits() -> Vec<SizeLimit> {
 }
 
 /// Number of bisection steps, more than a double has bits.
-const HALVINGS: usize = 60;
+const BISECTION_STEPS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {
     let translation = Threshold::of_degrees(THETA_DEG);
     let size = Threshold { angle: factor * translation.angle, size: SizeRule::Sphere, ..translation };
-    let decides = |radius: f64| size.way_of_size(1.0, radius) < translation.way(1.0);
+    let decides = |radius: f64| size.max_approach(1.0, radius) < translation.way(1.0);
     let mut range = [0.0, 1.0];
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTION_STEPS {
         let middle = (range[0] + range[1]) / 2.0;
         range[usize::from(decides(middle))] = middle;
     }

@@ -87,7 +87,7 @@ pub fn of_walk(
     let (frame, orientation) = if is_cut {
         let torn = Settings { falloff: Falloff::None, has_cascade: false, ..settings.clone() };
         let background = std::mem::replace(&mut world.background, WHITE);
-        let found = gaping(&world, &torn, &eye, frames)?.unwrap_or(last);
+        let found = best_tear_view(&world, &torn, &eye, frames)?.unwrap_or(last);
         gaped = gaps(&world, &torn, found.0, &eye, found.1)?;
         world.background = background;
         found
@@ -173,7 +173,7 @@ const EVERY: u64 = 29;
 /// Returns the frame and orientation at which a tear shows the largest number of background pixels.
 ///
 /// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if nothing tears.
-fn gaping(
+fn best_tear_view(
     world: &World,
     torn: &Settings,
     eye: &impl Fn(u64) -> DVec3,

@@ -5,7 +5,7 @@ use super::settings::WalkArgs;
 use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
-use crate::terminal::{advance, complain, print, progress};
+use crate::terminal::{advance, print, print_error, progress};
 use clap::Args;
 use pxpl5::arp::{ArpComparison, ComparedRow, compare, variant_count};
 use pxpl5::views::results::csv_table;
@@ -53,7 +53,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
     // A variant that cannot be walked is named, and the command fails after all others were walked.
     for (variant, reason) in &comparison.failed {
-        complain(&format!("pxpl5: {variant}: {reason}\n"));
+        print_error(&format!("pxpl5: {variant}: {reason}\n"));
     }
     match comparison.failed.len() {
         0 => Ok(()),

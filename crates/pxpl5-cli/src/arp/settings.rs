@@ -64,7 +64,7 @@ pub(super) struct WalkArgs {
 const LENS: &str = "arp.lens";
 
 /// Settings as tuples of path, value, and the file or option that gave the value.
-type Said = Vec<(String, String, String)>;
+type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
     /// Returns the scene and the plan of the walk, and prints a warning for every number outside its documented
@@ -122,8 +122,8 @@ impl WalkArgs {
     }
 
     /// Returns the scene's name and all settings in the order in which they apply: file, options, `--set`.
-    fn said(&self) -> Result<(String, Said), CliError> {
-        let mut said = Said::new();
+    fn said(&self) -> Result<(String, GivenSettings), CliError> {
+        let mut said = GivenSettings::new();
         let mut scene = "gallery".to_owned();
         if let Some(path) = &self.file {
             let place = path.display().to_string();

@@ -21,7 +21,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
 
 /// Returns the rows whose pictures were evaluated.
 fn judged(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
-    comparison.pipelines.iter().filter(|row| row.is_judged())
+    comparison.pipelines.iter().filter(|row| row.was_evaluated())
 }
 
 fn over_time(comparison: &Comparison) -> String {

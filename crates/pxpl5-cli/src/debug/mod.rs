@@ -80,7 +80,7 @@ fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<
 fn scripted(mut session: Session, commands: &[String]) -> Result<(), CliError> {
     for command in commands {
         print(&format!("> {command}\n"))?;
-        print(&session.obey(command).map_err(CliError::usage)?)?;
+        print(&session.execute_line(command).map_err(CliError::usage)?)?;
         if session.is_over() {
             break;
         }

@@ -71,17 +71,17 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let picture = stepper.seen(id).ok_or_else(|| format!("nothing can be said of {label}"))?;
-    picture_said(&picture, label, file)
+    describe_picture(&picture, label, file)
 }
 
 /// Describes the ideal picture at the current time, and saves the picture if a file is given.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("there is no ideal picture of {label}"))?;
-    picture_said(ideal.image(), label, file)
+    describe_picture(ideal.image(), label, file)
 }
 
-fn picture_said(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
+fn describe_picture(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
     let (width, height) = picture.dimensions();
     // The pixel at the top left serves as the background colour.
     let background = picture.get_pixel(0, 0);

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// Input line, output log and history of the debugger's screen.
 #[derive(Default)]
-struct Talk {
+struct ScreenState {
     /// Lines of output, oldest first.
     log: Vec<String>,
     line: String,
@@ -37,9 +37,9 @@ const LOG: usize = 2_000;
 pub(super) fn run(session: Session) -> io::Result<()> {
     let mut session = session.interrupted_by(key_waits);
     let mut terminal = ratatui::try_init()?;
-    let mut talk = Talk {
+    let mut talk = ScreenState {
         log: vec!["help lists the commands; F7 steps an event, F8 a line, F9 a field".to_owned()],
-        ..Talk::default()
+        ..ScreenState::default()
     };
     // The closure collects every terminal error, so that the terminal is restored before the error is returned.
     let result = (|| {
@@ -63,7 +63,7 @@ fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }
 
-fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
+fn pressed(session: &mut Session, talk: &mut ScreenState, key: KeyEvent) {
     // Letters edit the input line; function keys are short for steps.
     match key.code {
         KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
@@ -88,22 +88,22 @@ fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
 }
 
 /// Puts the history line `back` lines before the newest into the input line, or clears the line if `back` is 0.
-fn recall(talk: &mut Talk, back: usize) {
+fn recall(talk: &mut ScreenState, back: usize) {
     talk.back = back.min(talk.history.len());
     let place = talk.history.len() - talk.back;
     talk.line = talk.history.get(place).cloned().unwrap_or_default();
 }
 
-fn say(session: &mut Session, talk: &mut Talk, line: &str) {
+fn say(session: &mut Session, talk: &mut ScreenState, line: &str) {
     talk.log.push(format!("> {line}"));
-    let said = session.obey(line).unwrap_or_else(|error| error);
+    let said = session.execute_line(line).unwrap_or_else(|error| error);
     talk.log.extend(said.lines().map(str::to_owned));
     // Keep the log bounded by dropping its oldest lines.
     let gone = talk.log.len().saturating_sub(LOG);
     talk.log.drain(..gone);
 }
 
-fn draw(frame: &mut Frame<'_>, session: &Session, talk: &Talk) {
+fn draw(frame: &mut Frame<'_>, session: &Session, talk: &ScreenState) {
     let rows = Layout::vertical([Constraint::Fill(3), Constraint::Fill(2), Constraint::Length(1)]);
     let [machine, log, line] = rows.areas(frame.area());
     // Draw the five panes. Only the pane of boards scrolls.
@@ -149,13 +149,13 @@ mod tests {
         Session::new(experiment.stepper().expect("it can be built"))
     }
 
-    fn shown(session: &Session, talk: &Talk, (width, height): (u16, u16)) -> String {
+    fn shown(session: &Session, talk: &ScreenState, (width, height): (u16, u16)) -> String {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen of characters");
         terminal.draw(|frame| draw(frame, session, talk)).expect("it can be drawn");
         terminal.backend().to_string()
     }
 
-    fn type_in(session: &mut Session, talk: &mut Talk, text: &str) {
+    fn type_in(session: &mut Session, talk: &mut ScreenState, text: &str) {
         text.chars().for_each(|letter| pressed(session, talk, KeyEvent::from(KeyCode::Char(letter))));
         pressed(session, talk, KeyEvent::from(KeyCode::Enter));
     }
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn what_is_typed_is_done_and_every_pane_shows_the_machine() {
         let mut session = session();
-        let mut talk = Talk::default();
+        let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "run to field 4");
         for size in [(80, 40), (160, 50)] {
             let screen = shown(&session, &talk, size);
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_command_that_is_not_understood_is_said_and_ends_nothing() {
         let mut session = session();
-        let mut talk = Talk::default();
+        let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "jump");
         assert!(talk.log.iter().any(|line| line.contains("found `jump`")) && !session.is_over());
         pressed(&mut session, &mut talk, KeyEvent::from(KeyCode::Up));
@@ -198,7 +198,7 @@ mod tests {
     fn a_screen_of_any_size_can_be_drawn() {
         let session = session();
         for size in [(1, 1), (3, 2), (20, 5), (100, 9), (400, 120)] {
-            shown(&session, &Talk::default(), size);
+            shown(&session, &ScreenState::default(), size);
         }
     }
 }

@@ -47,7 +47,7 @@ impl Session {
     /// # Errors
     ///
     /// Returns the expected form and the text found. The session is unchanged after an error.
-    pub(super) fn obey(&mut self, line: &str) -> Result<String, String> {
+    pub(super) fn execute_line(&mut self, line: &str) -> Result<String, String> {
         // Only `run`, `next` and `step` change the machine.
         match parse(line, self.stepper.now())? {
             Command::Nothing => Ok(String::new()),
@@ -201,8 +201,8 @@ impl Session {
         let hit = self.hits.iter().rev().find(|hit| self.stepper.record().ports().board(hit.gp) == board);
         let of_call = processor.with_processor(|processor| processor.state().clone());
         let state = hit.map(|hit| (*hit.state).clone()).or(of_call).ok_or("no processor")?;
-        let whence = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
-        let mut text = format!("{board}, {whence}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
+        let origin_of_registers = if hit.is_some() { "at the breakpoint" } else { "after the last call" };
+        let mut text = format!("{board}, {origin_of_registers}: pc {:#010x}, psr {:#010x}\n", state.pc, state.psr);
         // Eight registers in a line.
         for (name, registers) in [("r", &state.r), ("f", &state.f)] {
             for (row, four) in registers.chunks(8).enumerate() {

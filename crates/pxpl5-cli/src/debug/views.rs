@@ -27,7 +27,7 @@ pub(super) fn time(stepper: &Stepper) -> String {
     if let Some(last) = stepper.last() {
         let _ = writeln!(text, "last    {}: {}", last.board, last.what);
     }
-    if let Some(next) = stepper.machine().next_happening() {
+    if let Some(next) = stepper.machine().next_event_description() {
         let _ = writeln!(text, "next    {} {}: {}", ms(next.time), next.board, next.what);
     }
     let _ = writeln!(text, "events  {}", stepper.machine().events());
@@ -35,7 +35,6 @@ pub(super) fn time(stepper: &Stepper) -> String {
     text
 }
 
-/// Returns one line for each board.
 pub(super) fn boards(stepper: &Stepper) -> String {
     let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.says(board)?)));
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()

@@ -59,7 +59,7 @@ fn is_temporary(name: &OsStr) -> bool {
 /// Removes temporary files of processes that ended without removing them. A file is left over if no process holds its
 /// lock. The caller must hold the folder's lock, so that no process is between creating and locking a file, or
 /// replacing files.
-pub(super) fn remove_left_over(folder: &Path) {
+pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
         let path = entry.path();
@@ -112,13 +112,13 @@ impl Batch {
     }
 
     /// Moves the file that was put last to the front, so that it is renamed first.
-    pub(super) fn last_first(&mut self) {
+    pub(super) fn rename_last_file_first(&mut self) {
         let last = self.files.pop();
         self.files.splice(..0, last);
     }
 
     /// Schedules a file for removal after all new files have their names.
-    pub(super) fn take_away(&mut self, path: PathBuf) {
+    pub(super) fn remove_on_commit(&mut self, path: PathBuf) {
         self.gone.push(path);
     }
 

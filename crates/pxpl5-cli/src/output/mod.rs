@@ -80,7 +80,7 @@ impl OutputFolder {
         // A temporary file shows whether the folder is writable.
         folder.in_folder(|batch| batch.try_in(path))?;
         if let Some(_lock) = folder.lock() {
-            batch::remove_left_over(path);
+            batch::remove_leftover_files(path);
         }
         // The folder is created again when files are written.
         folder.unmake();
@@ -175,7 +175,7 @@ impl OutputFolder {
             Listing::Own(manifest) => {
                 if let Some(before) = before(&self.path)? {
                     let gone = manifest.replace(&before, &self.path);
-                    gone.into_iter().for_each(|path| self.batch.take_away(path));
+                    gone.into_iter().for_each(|path| self.batch.remove_on_commit(path));
                 }
                 manifest.clone()
             }
@@ -189,7 +189,7 @@ impl OutputFolder {
         let put = self.batch.put(&target, manifest.to_text().as_bytes());
         put.map_err(|error| self.place.refused(&self.path, &error))?;
         // The manifest must get its name before all other files.
-        self.batch.last_first();
+        self.batch.rename_last_file_first();
         Ok(())
     }
 }

@@ -64,7 +64,6 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
 /// Description of an output in error messages, in the words of its option.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
-    /// Option that gives the path.
     option: &'static str,
     /// The file that the option names, or `None` if the option names a folder.
     file: Option<PathBuf>,

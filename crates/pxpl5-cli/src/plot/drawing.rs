@@ -2,7 +2,7 @@
 
 use super::PlotArgs;
 use super::question::{Group, text};
-use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
+use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 
 /// Returns the chart of some groups. Numbers on the x axis are sorted; names keep the order of the rows.
 pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
@@ -50,6 +50,6 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
         own.map(|group| ChartPoint { at: (across(group), group.mean), interval: group.interval }).collect();
     points.sort_by(|one, other| one.at.0.total_cmp(&other.at.0));
     let is_curve = names.is_none() && points.len() > 1;
-    let look = if is_curve { SeriesLook::Band } else { SeriesLook::Points };
+    let look = if is_curve { SeriesStyle::Band } else { SeriesStyle::Points };
     ChartSeries { name: by.join(", "), points, look }
 }

@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::numbers::{are, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
-use crate::terminal::{complain, print, warn};
+use crate::terminal::{print, print_error, warn};
 use formats::Format;
 use pxpl5::results::csv_table;
 use pxpl5::views::charts::AxisScale;
@@ -136,7 +136,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing, "row");
-        complain(&format!("pxpl5: {rows} {have} no number under {} and {are} left out of the means\n", args.y));
+        print_error(&format!("pxpl5: {rows} {have} no number under {} and {are} left out of the means\n", args.y));
     }
     if args.quiet {
         return Ok(());

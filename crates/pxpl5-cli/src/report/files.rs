@@ -1,7 +1,7 @@
 //! Access to the files of a results folder that belong to its run, as listed in its manifest.
 
 use crate::error::CliError;
-use crate::terminal::complain;
+use crate::terminal::print_error;
 use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use std::fs;
 use std::path::Path;
@@ -76,7 +76,7 @@ impl<'a> Files<'a> {
 
     fn warn(&self, text: &str) {
         if !self.quiet {
-            complain(&format!("pxpl5: warning: {text}\n"));
+            print_error(&format!("pxpl5: warning: {text}\n"));
         }
     }
 }

@@ -10,7 +10,7 @@ use pxpl5::lab::motion;
 use pxpl5::views::Animation;
 use pxpl5::views::charts::{ChartAxes, Curve, decade_chart};
 use pxpl5::views::results::csv_table;
-use pxpl5::volume::heads::{HeadBefore, HeadQuestion, HeadSample, HeadStudy};
+use pxpl5::volume::heads::{HeadComparison, HeadSample, HeadStudy, HeadStudyConfig};
 use std::path::Path;
 
 /// Options of a viewer whose head moves around the volume.
@@ -50,9 +50,9 @@ pub(super) fn run(
     let settings = options.settings.gather()?;
     let volume = options.draw(&settings)?;
     let threads = options.settings.threads();
-    let before = HeadBefore::new(&volume, motion.as_ref(), args.latency)?;
+    let before = HeadComparison::new(&volume, motion.as_ref(), args.latency)?;
     let question =
-        HeadQuestion { latency_ms: args.latency, seconds: args.seconds, instants: args.frames * INSTANTS_PER_FRAME };
+        HeadStudyConfig { latency_ms: args.latency, seconds: args.seconds, instants: args.frames * INSTANTS_PER_FRAME };
     let study = before.study(&question)?;
     let json = serde_json::to_string_pretty(&study).map_err(CliError::failure)? + "\n";
     // Write the report and the errors, then render the film with the exposure of its first picture.

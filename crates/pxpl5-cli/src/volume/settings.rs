@@ -121,7 +121,6 @@ impl SettingOptions {
         Ok(settings)
     }
 
-    /// Returns the number of threads that draw.
     pub(super) fn threads(&self) -> Threads {
         let asked = self.threads.and_then(|threads| NonZero::new(threads as usize));
         asked.map_or_else(Threads::all, Threads)

@@ -90,7 +90,6 @@ fn tiling(volume: &Volume) -> Tiling {
     Tiling { tile: (size > 0).then_some(size), batch: 1 }
 }
 
-/// Writes a picture of a volume.
 pub(super) fn write(file: OutputFile, picture: &RgbImage, volume: &Volume) -> Result<(), CliError> {
     file.write(&png(picture, volume)?)
 }

@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
 use crate::leaves::plain;
 use crate::numbers::whole;
-use crate::sweep::{shard, tell_failures, tell_place};
+use crate::sweep::{report_failures, report_rows_path, shard};
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::Fingerprint;
@@ -80,8 +80,8 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     bar.finish_and_clear();
     let total = ours.len() as u64;
-    let failed = tell_failures(&store, args.shard, total, "drawn")?;
-    tell_place(&args.out, total, args.quiet)?;
+    let failed = report_failures(&store, args.shard, total, "drawn")?;
+    report_rows_path(&args.out, total, args.quiet)?;
     store.finish()?;
     if failed >= total { Err(CliError::failure("no point could be drawn")) } else { Ok(()) }
 }

@@ -1,7 +1,7 @@
 //! Evaluation of the pipeline's expressions at pixels, by the renderer's formats.
 
 use super::{HEIGHT, WIDTH};
-use pxpl5_geometry::{GouraudTriangle, LitColours, RegionMask, ScreenTriangle, SetupStats, Viewport};
+use pxpl5_geometry::{GouraudTriangle, RegionMask, ScreenTriangle, SetupStats, VertexColours, Viewport};
 use pxpl5_wire::{RegionGrid, RegionId, format};
 use std::ops::Range;
 
@@ -16,12 +16,12 @@ pub fn region_of(x: i32, y: i32) -> RegionId {
 /// A screen triangle with its expressions on the whole frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece {
-    pub screen: ScreenTriangle<LitColours>,
+    pub screen: ScreenTriangle<VertexColours>,
     pub planes: GouraudTriangle,
 }
 
 impl Piece {
-    pub fn new(screen: ScreenTriangle<LitColours>, stats: &mut SetupStats) -> Self {
+    pub fn new(screen: ScreenTriangle<VertexColours>, stats: &mut SetupStats) -> Self {
         let planes = screen.gouraud(&Viewport::FRAME, stats);
         Self { screen, planes }
     }

@@ -2,7 +2,7 @@
 //! over a scene, without the time of bin entries.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
-use pphigs::{FrameView, Handing, Pass, RegionEnvelope, region_messages};
+use pphigs::{BinHandoffWork, FrameView, Pass, RegionEnvelope, region_messages};
 use pxpl5_gp::{CodeVersion, Fault, GpTiming, Processor, Work};
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::CommandKind;
@@ -124,7 +124,7 @@ fn token(
     let envelope = RegionEnvelope::default();
     // Receive the token, send the bin of the region, and pass the token on.
     traffic.receive(processor, TOKEN)?;
-    let span = Handing { pass, context, view: 0, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
+    let span = BinHandoffWork { pass, context, view: 0, region, envelope }.by_code(&GpTiming::PAPERS, processor)?;
     traffic.handed.push([pass.counts(region).total().into(), span.0 as f64 / 1e3]);
     for list in region_messages(pass, region, context, envelope) {
         traffic.send(processor, &[commands(list)])?;

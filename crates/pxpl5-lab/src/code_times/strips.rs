@@ -2,7 +2,8 @@
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
-    Interpolating, KeepingEnds, MemoryPart, Picture, PrimitiveCounts, RegionBinning, Searching, Shading, put_together,
+    MemoryPart, Picture, PrimitiveCounts, RegionBinning, Shading, StripInterpolation, TriangleEndsRecorder,
+    WindowSearchWork, assemble_order,
 };
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{CodeVersion, GpTiming, ProcessorFault};
@@ -99,8 +100,9 @@ fn measured(version: CodeVersion, boards: usize) -> Result<Measured, ExperimentE
     // The widest range of lines includes every triangle, the reversed range none.
     let all = [i32::MIN, i32::MAX];
     let passed_ns = between_ns(&mut rig, false, [i32::MAX, i32::MIN]).map_err(fault)?;
-    let [on_screen, in_view] = [false, true].map(|in_view| between_ns(&mut rig, in_view, all).map_err(fault));
-    Ok(Measured { triangles, search_ns, entry_ns, ends_ns, passed_ns, interpolated_ns: [on_screen?, in_view?] })
+    let [on_screen, in_eye_space] =
+        [false, true].map(|in_eye_space| between_ns(&mut rig, in_eye_space, all).map_err(fault));
+    Ok(Measured { triangles, search_ns, entry_ns, ends_ns, passed_ns, interpolated_ns: [on_screen?, in_eye_space?] })
 }
 
 const VIEWPORT: Viewport = Viewport::field(FieldParity::Even);
@@ -129,7 +131,7 @@ fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     for strip in 0..GRID.rows() as u16 {
         let windows: Vec<_> = (strip * columns..(strip + 1) * columns).map(RegionId).collect();
         let part = MemoryPart::WHOLE;
-        let searching = Searching { part, viewport: VIEWPORT, grid: GRID, windows: &windows, counts: &counts };
+        let searching = WindowSearchWork { part, viewport: VIEWPORT, grid: GRID, windows: &windows, counts: &counts };
         let Some(output) = searching.run_code(&mut rig.processor)? else { continue };
         let listed = output.listed(&rig.processor)?;
         let entries = listed.iter().flatten().filter(|[address, _]| *address >= COMMANDS).count();
@@ -142,19 +144,19 @@ const PARTS: [MemoryPart; 2] = [MemoryPart::of(0, 2), MemoryPart::of(1, 2)];
 
 fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
-    let keeping = KeepingEnds { share: &rig.share, views: [&from, &to], picture: PICTURE, part: PARTS[0] };
+    let keeping = TriangleEndsRecorder { share: &rig.share, views: [&from, &to], picture: PICTURE, part: PARTS[0] };
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
 /// Returns the time to compute the commands of triangles near some lines, half way between two views.
-fn between_ns(rig: &mut Rig, in_view: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
+fn between_ns(rig: &mut Rig, in_eye_space: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
-    let interpolating = Interpolating {
+    let interpolating = StripInterpolation {
         share: &rig.share,
         views: [&from, &to],
         between: &from,
         part_of_way: 0.5,
-        in_view,
+        in_eye_space,
         near,
         picture: PICTURE,
         ends: PARTS[0],
@@ -173,7 +175,7 @@ fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
     let mut times = [0.0; 4];
     for (time, (words, head)) in times.iter_mut().zip(ORDERS) {
         for _ in 0..2 {
-            *time = ns(put_together(&mut rig.processor, &vec![0; words], head).map_err(fault)?);
+            *time = ns(assemble_order(&mut rig.processor, &vec![0; words], head).map_err(fault)?);
         }
     }
     Ok(times)

@@ -5,7 +5,7 @@ use pxpl5_run::Registry;
 
 /// One row of a comparison: a pipeline and the settings that differ from the shared ones.
 #[derive(Clone, Debug)]
-pub(super) struct Contender {
+pub(super) struct ComparedPipeline {
     pub(super) name: String,
     pub(super) pipeline: &'static str,
     pub(super) settings: &'static [(&'static str, &'static str)],
@@ -20,7 +20,7 @@ const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 /// Settings of [`TOUCHED`] with a raster that is shifted before the eyes.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
-impl Contender {
+impl ComparedPipeline {
     fn plain(pipeline: &'static str) -> Self {
         Self { name: pipeline.to_owned(), pipeline, settings: &[], showing: Showing::Plain }
     }
@@ -33,14 +33,14 @@ impl Contender {
 
 /// Returns a row for every compared pipeline of the registry, in its order. The variants of Slats (touched regions,
 /// raster offset, reference) follow Slats.
-pub(super) fn contenders(registry: &Registry) -> Vec<Contender> {
+pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
-        all.push(Contender::plain(entry.name));
+        all.push(ComparedPipeline::plain(entry.name));
         if entry.name == "slats" {
-            all.push(Contender::of_slats("slats-touched", Showing::Plain));
-            all.push(Contender::of_slats("vdrt", Showing::RasterOffset));
-            all.push(Contender::of_slats("ideal", Showing::Ideal));
+            all.push(ComparedPipeline::of_slats("slats-touched", Showing::Plain));
+            all.push(ComparedPipeline::of_slats("vdrt", Showing::RasterOffset));
+            all.push(ComparedPipeline::of_slats("ideal", Showing::Ideal));
         }
     }
     all

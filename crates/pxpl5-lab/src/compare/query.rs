@@ -1,6 +1,6 @@
 //! The query of a comparison and its execution.
 
-use super::contender::{Contender, contenders};
+use super::contender::{ComparedPipeline, compared_pipelines};
 use super::predictors::predictor_means;
 use super::row::ComparisonRow;
 use super::trial::Trial;
@@ -109,24 +109,24 @@ impl CompareQuery {
     ///
     /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
-        let contenders = self.contenders()?;
+        let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
-        let any = self.any_plan(&contenders)?;
+        let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
-        let runs = self.runs(&contenders);
-        let searches = if self.limits { contenders.len() } else { 0 };
+        let runs = self.runs(&compared_pipelines);
+        let searches = if self.limits { compared_pipelines.len() } else { 0 };
         let all = (runs.len() + searches) as u64;
         let done = AtomicU64::new(0);
         let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
         // All runs of all rows and seeds execute in parallel. Searches for limits follow, one for each row.
         let trials = parallel::map(&runs, |(contender, seed)| {
-            let trial = self.trial(&contenders[*contender], *seed, &scene);
+            let trial = self.trial(&compared_pipelines[*contender], *seed, &scene);
             step();
             trial
         });
         // Group the trials by row again, in the order in which they were created.
         let mut of_row = trials.into_iter();
-        let rows: Vec<_> = contenders
+        let rows: Vec<_> = compared_pipelines
             .iter()
             .map(|contender| (contender, of_row.by_ref().take(self.seeds.len()).collect::<Vec<_>>()))
             .collect();
@@ -157,14 +157,14 @@ impl CompareQuery {
     ///
     /// Fails in the same cases as [`CompareQuery::run`].
     pub fn plans(&self) -> Result<Vec<Plan>, CompareError> {
-        let contenders = self.contenders()?;
-        let seed = self.any_plan(&contenders)?.seed;
-        Ok(contenders.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+        let compared_pipelines = self.compared_pipelines()?;
+        let seed = self.any_plan(&compared_pipelines)?.seed;
+        Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns the rows to run, in the order of the registry.
-    fn contenders(&self) -> Result<Vec<Contender>, CompareError> {
-        let mut chosen = contenders(self.shared.registry());
+    fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, CompareError> {
+        let mut chosen = compared_pipelines(self.shared.registry());
         let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
         for found in &self.only {
             if !names.contains(found) {
@@ -177,9 +177,9 @@ impl CompareQuery {
     }
 
     /// Returns a plan of the first row, to check the shared settings.
-    fn any_plan(&self, contenders: &[Contender]) -> Result<Plan, CompareError> {
+    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
-        let first = contenders.first().ok_or(CompareError::NoPipeline)?;
+        let first = compared_pipelines.first().ok_or(CompareError::NoPipeline)?;
         let plan = first.plan(&self.shared, seed)?;
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
@@ -193,11 +193,13 @@ impl CompareQuery {
     }
 
     /// Returns pairs of a row's index and a seed, in the order of rows.
-    fn runs(&self, contenders: &[Contender]) -> Vec<(usize, u64)> {
-        (0..contenders.len()).flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed))).collect()
+    fn runs(&self, compared_pipelines: &[ComparedPipeline]) -> Vec<(usize, u64)> {
+        (0..compared_pipelines.len())
+            .flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed)))
+            .collect()
     }
 
-    fn trial(&self, contender: &Contender, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+    fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
@@ -207,7 +209,7 @@ impl CompareQuery {
 
     fn row(
         &self,
-        contender: &Contender,
+        contender: &ComparedPipeline,
         trials: &[Result<Trial, String>],
         scene: &Arc<Scene>,
     ) -> Result<ComparisonRow, CompareError> {
@@ -218,7 +220,7 @@ impl CompareQuery {
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene)).rehearsed_as(first.rehearsed.clone());
+            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.rehearsed.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
@@ -229,12 +231,12 @@ impl CompareQuery {
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.
         let shown: usize = ran.iter().map(|trial| trial.shown).sum();
-        row.failure = error.or_else(|| (shown == 0 && !row.is_judged()).then(|| nothing_shown(&row, plan.fields)));
+        row.failure = error.or_else(|| (shown == 0 && !row.was_evaluated()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
     }
 }
 
-impl Contender {
+impl ComparedPipeline {
     fn is_reference(&self) -> bool {
         self.showing == Showing::Ideal
     }

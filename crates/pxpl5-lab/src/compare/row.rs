@@ -1,10 +1,10 @@
 //! A row of a comparison, which combines the runs of all seeds.
 
-use super::contender::Contender;
+use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use super::trial::Trial;
 use distrs::StudentsT;
-use pxpl5_measure::{Budget, FieldError, Percentiles, Showing};
+use pxpl5_measure::{Budget, FieldMisregistration, Percentiles, Showing};
 use pxpl5_run::{Cause, Pipeline, Statistics};
 use serde::Serialize;
 use tracking::predict::PredictorKind;
@@ -122,7 +122,7 @@ pub struct ComparisonRow {
     pub host_seconds: f64,
     /// Errors of the first seed by field.
     #[serde(skip)]
-    pub by_field: Vec<FieldError>,
+    pub by_field: Vec<FieldMisregistration>,
     /// Last picture of the first seed before the first eye. `None` if the query did not ask for pictures, or no
     /// picture was shown.
     #[serde(skip)]
@@ -131,7 +131,7 @@ pub struct ComparisonRow {
 
 impl ComparisonRow {
     /// Combines the runs of a row. A row without runs has no numbers.
-    pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
+    pub(super) fn of(contender: &ComparedPipeline, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
         let is_reference = contender.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
@@ -175,7 +175,7 @@ impl ComparisonRow {
 
     /// Returns true if at least one pixel of the row was evaluated.
     #[must_use]
-    pub const fn is_judged(&self) -> bool {
+    pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0
     }
 }
@@ -186,7 +186,7 @@ fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> 
     known.peek().is_some().then(|| known.sum())
 }
 
-fn settings_text(contender: &Contender) -> String {
+fn settings_text(contender: &ComparedPipeline) -> String {
     let settings = contender.settings.iter().map(|(key, value)| format!("{key}={value}"));
     settings.collect::<Vec<_>>().join(" ")
 }

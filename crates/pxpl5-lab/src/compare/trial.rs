@@ -1,10 +1,10 @@
 //! One run of one row of a comparison.
 
-use super::contender::Contender;
+use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
-use pxpl5_run::{DuePictures, Outcome, Pixels, Rehearsed};
+use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeSet;
@@ -27,12 +27,12 @@ pub(super) struct Trial {
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
     /// Result of the dry run before the run.
-    pub(super) rehearsed: Option<Arc<Rehearsed>>,
+    pub(super) rehearsed: Option<Arc<DryRun>>,
     /// Last picture of a run with pixels, if a picture was shown.
     pub(super) picture: Option<LastPicture>,
 }
 
-impl Contender {
+impl ComparedPipeline {
     /// Returns the shared settings with this row's pipeline and settings and a seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();

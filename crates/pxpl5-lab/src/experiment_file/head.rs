@@ -55,7 +55,7 @@ impl HeadChoice {
             Some(setting) if is_recording(motion_name) => beside(&setting.folder, motion_name),
             _ => motion_name.to_owned(),
         };
-        refuse_replay_of_others(file, &motion_name)?;
+        refuse_recording_keys(file, &motion_name)?;
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
         // Build motion, tracker and predictor with the experiment's numbers.
@@ -67,10 +67,10 @@ impl HeadChoice {
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
-        let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).aiming(aim);
+        let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim);
         let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
-        let head = head.supposing(supposed);
+        let head = head.with_unsupported_parameters(supposed);
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
@@ -158,7 +158,7 @@ fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
 }
 
 /// Refuses keys of recordings if the motion is not a recording.
-fn refuse_replay_of_others(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
+fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
         Some((path, setting)) => Err(wrong(path, setting, "nothing: head.motion is no recording")),
@@ -187,7 +187,7 @@ fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
 
 fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
     match file.number("head.judge_at")? {
-        Some(metres) => head.judged_at(metres).map_err(|error| refused(file, "head.judge_at", &error)),
+        Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.judge_at", &error)),
         None => Ok(head),
     }
 }

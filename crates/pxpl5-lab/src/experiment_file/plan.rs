@@ -12,7 +12,7 @@ use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, times_of_table,
+    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::Scene;
 use std::sync::Arc;
@@ -316,7 +316,7 @@ impl Plan {
     /// Returns the parameters of machine and tracking whose values lie outside the range of their sources.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        let of_head = self.head.iter().flat_map(|head| head.head().suppositions().to_vec());
+        let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
@@ -324,7 +324,7 @@ impl Plan {
     /// from a table where executed code was requested. Warnings about the head's recording are included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let of_table = times_of_table(self.level, &self.machine, self.pipeline.as_ref());
+        let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
         self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
     }
@@ -346,8 +346,8 @@ impl Plan {
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
-            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
-            .summed_by(Some(HeadSum::begin))
+            .with_estimates(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
+            .observed_by(Some(HeadSum::begin))
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

@@ -43,51 +43,50 @@ pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
     format!(
         "{scene} {} {} {:?} {:?} {:?}",
         experiment.length(),
-        experiment.seed_of_motion(),
-        experiment.level_of_modelling(),
+        experiment.motion_seed(),
+        experiment.modelling_level(),
         experiment.pipeline(),
         experiment.config(),
     )
 }
 
 impl Applications {
-    /// Returns a built-in scene.
     pub(super) fn scene(&self, name: &'static str, culled: bool) -> Result<Arc<Scene>> {
         let make = || {
             let whole = scene_named(name)?;
             Ok(if culled { Arc::new(Arc::unwrap_or_clone(whole).culled()) } else { whole })
         };
-        find_or_make(&self.scenes, (name, culled), make)
+        find_or_compute(&self.scenes, (name, culled), make)
     }
 
     /// Returns the loads of a scene. `make` computes them at the first request.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
-        find_or_make(&self.loads, key, || make().map(Arc::new))
+        find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
     /// Returns the measurement of the pendulum rig for some rules. `make` computes the measurement at the first
     /// request.
     pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
-        find_or_make(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
+        find_or_compute(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
     }
 }
 
 impl Applications {
     /// Returns the summary of an experiment. `make` computes the summary at the first request.
     pub(super) fn summary(&self, key: String, make: impl FnOnce() -> Result<Summary>) -> Result<Arc<Summary>> {
-        find_or_make(&self.summaries, key, || make().map(Arc::new))
+        find_or_compute(&self.summaries, key, || make().map(Arc::new))
     }
 
     /// Returns the result of a search for a limit. `make` runs the search at the first request.
     pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
-        find_or_make(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
+        find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
 }
 
 /// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the
 /// result. `make` must not run work on other threads. A thread that waits for them could take over work that requests
 /// the same key, and deadlock.
-fn find_or_make<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
+fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());
     let mut known = locked(&place);

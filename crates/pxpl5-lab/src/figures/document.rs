@@ -4,7 +4,7 @@ use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, Spread, published};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
-use crate::readings::{self, Fit, FitOfFigure, Readings};
+use crate::readings::{self, FigureFit, Fit, Readings};
 use std::fmt::Write as _;
 
 /// Returns ACCURACY.md: a table of all figures, then each miss with its cause.
@@ -125,7 +125,7 @@ fn of_readings(text: &mut String, readings: &Readings) {
 
 /// Returns a row of the table of interpretations. Figures that the interpretation does not explain are bold.
 fn fitted(fit: &Fit) -> String {
-    let value = |figure: &FitOfFigure| {
+    let value = |figure: &FigureFit| {
         let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({sd:.2})"));
         let text = format!("{}{sd}", number(figure.simulated));
         if fit.unexplained.contains(&figure.id) { format!("**{text}**") } else { text }

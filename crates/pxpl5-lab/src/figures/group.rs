@@ -46,7 +46,6 @@ pub(super) const fn free(
 }
 
 impl FigureGroup {
-    /// Measures the figures of a topic.
     pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
         let rows = parallel::map(&topic.measurements, |measurement| measurement.row(bench));
         let rows = rows.into_iter().collect::<std::result::Result<Vec<_>, _>>()?;

@@ -90,7 +90,7 @@ fn head() -> Result<Head> {
 
 fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> Result<Outcome> {
     let jitp = Jitp { strip_rows: 1, ..Jitp::new(viewpoint, true) };
-    let experiment = Experiment::new(machine, jitp, edge_scene(0.0)).head(head()?.aiming(aim));
+    let experiment = Experiment::new(machine, jitp, edge_scene(0.0)).head(head()?.with_aim(aim));
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 

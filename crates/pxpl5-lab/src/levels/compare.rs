@@ -99,7 +99,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     }
     let machine = experiment.config().clone().with_times_of_code(experiment.pipeline().code_use());
     let other = Experiment::with(machine, Arc::clone(experiment.pipeline()), Arc::clone(experiment.scene()));
-    Ok(other.fields(experiment.length()).seed(experiment.seed_of_motion()).pixels(Pixels::Off).level(level))
+    Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
 }
 
 /// Returns the quantity that is compared between levels. The value is NaN if no picture is shown.

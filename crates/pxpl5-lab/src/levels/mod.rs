@@ -18,7 +18,7 @@ use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 /// Fails in the same cases as [`Experiment::run`]. At the analytic level fails with the error of the closed form, or
 /// with [`ExperimentError::Level`] if there is none.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
-    if experiment.level_of_modelling() != Level::Analytic {
+    if experiment.modelling_level() != Level::Analytic {
         return Ok(summary(&experiment.run()?));
     }
     let entry = registry.pipeline(experiment.pipeline().name()).ok();

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// Fit of one figure under one interpretation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FitOfFigure {
+pub struct FigureFit {
     /// Number of the figure.
     pub id: &'static str,
     /// Value printed in the paper, in `unit`.
@@ -32,13 +32,13 @@ pub struct Fit {
     /// The interpretation in words.
     pub words: String,
     /// Fit of each figure, in the order of [`FIGURES`].
-    pub figures: Vec<FitOfFigure>,
+    pub figures: Vec<FigureFit>,
     /// Mean of the absolute errors in percent.
     pub mean_error_percent: f64,
     /// Largest absolute error in percent.
     pub greatest_error_percent: f64,
     /// Logarithm of the likelihood of the printed means and deviations, up to a constant. See
-    /// [`FitOfFigure::log_likelihood`].
+    /// [`FigureFit::log_likelihood`].
     pub log_likelihood: f64,
     /// Figures that the interpretation does not explain: their error exceeds 8 %, or their deviation differs by more
     /// than a quarter.
@@ -54,7 +54,7 @@ const EXPLAINED_SD: f64 = 0.25;
 /// Relative uncertainty of the model itself: clocks and costs that no paper gives.
 const DISCREPANCY: f64 = 0.02;
 
-/// Assumed number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
+/// Number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
 /// of 4 and 5 only for 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
@@ -63,7 +63,7 @@ fn published_sd(figure: &Figure) -> Option<f64> {
     ["7", "7b", "7c"].contains(&figure.id).then_some(figure.spread).flatten()
 }
 
-impl FitOfFigure {
+impl FigureFit {
     fn new(bench: &Bench, figure: &Figure) -> Result<Self, ExperimentError> {
         let measured = bench.measure(figure.id)?;
         let published_sd = published_sd(figure);
@@ -113,13 +113,13 @@ impl Fit {
     pub fn of(bench: &Bench, reading: Reading) -> Result<Self, ExperimentError> {
         let bench = Bench { reading, ..bench.clone() };
         let of_reading = crate::figures::FIGURES.iter().filter(|figure| FIGURES.contains(&figure.id));
-        let figures = of_reading.map(|figure| FitOfFigure::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
+        let figures = of_reading.map(|figure| FigureFit::new(&bench, figure)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             reading,
             words: reading.to_string(),
             mean_error_percent: mean_without(&figures, None),
             greatest_error_percent: figures.iter().map(|figure| figure.error_percent.abs()).fold(0.0, f64::max),
-            log_likelihood: figures.iter().map(FitOfFigure::log_likelihood).sum(),
+            log_likelihood: figures.iter().map(FigureFit::log_likelihood).sum(),
             unexplained: figures.iter().filter(|figure| !figure.is_explained()).map(|figure| figure.id).collect(),
             figures,
         })
@@ -137,7 +137,7 @@ pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }
 
-fn mean_without(figures: &[FitOfFigure], left_out: Option<&str>) -> f64 {
+fn mean_without(figures: &[FigureFit], left_out: Option<&str>) -> f64 {
     let counted: Vec<f64> =
         figures.iter().filter(|figure| Some(figure.id) != left_out).map(|figure| figure.error_percent.abs()).collect();
     counted.iter().sum::<f64>() / counted.len().max(1) as f64
@@ -147,7 +147,7 @@ fn mean_without(figures: &[FitOfFigure], left_out: Option<&str>) -> f64 {
 mod tests {
     use super::*;
 
-    const EXACT: FitOfFigure = FitOfFigure {
+    const EXACT: FigureFit = FigureFit {
         id: "7",
         published: 4.0,
         simulated: 4.0,
@@ -160,17 +160,17 @@ mod tests {
     #[test]
     fn what_is_printed_is_the_likeliest_and_a_deviation_of_nothing_is_no_explanation() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
-        let off = FitOfFigure { simulated: 4.2, error_percent: 5.0, ..EXACT };
+        let off = FigureFit { simulated: 4.2, error_percent: 5.0, ..EXACT };
         // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
         let expected = -0.5 * (0.2f64.powi(2) / (0.25 / 87.0 + 0.0064 + 0.000_025));
         assert!((off.log_likelihood() - expected).abs() < 1e-12);
-        assert!(off.is_explained() && !FitOfFigure { simulated_sd: Some(0.0), ..EXACT }.is_explained());
-        assert!(!FitOfFigure { error_percent: -8.1, ..EXACT }.is_explained());
+        assert!(off.is_explained() && !FigureFit { simulated_sd: Some(0.0), ..EXACT }.is_explained());
+        assert!(!FigureFit { error_percent: -8.1, ..EXACT }.is_explained());
     }
 
     #[test]
     fn a_figure_left_out_does_not_count() {
-        let figures = [EXACT, FitOfFigure { id: "3", error_percent: -20.0, ..EXACT }];
+        let figures = [EXACT, FigureFit { id: "3", error_percent: -20.0, ..EXACT }];
         assert_eq!((mean_without(&figures, None), mean_without(&figures, Some("3"))), (10.0, 0.0));
     }
 }

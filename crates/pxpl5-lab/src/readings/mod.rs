@@ -3,7 +3,7 @@
 //! ```text
 //!   Reading::all() --Bench with a Reading, analytic--> Fit of each --best of them, transaction--> Readings: ranked
 //!                                                   |
-//!                                                   +--without one figure in turn--> LeftOut: predicted by the others' choice
+//!                                                   +--without one figure in turn--> LeaveOneOut: predicted by the others' choice
 //! ```
 //!
 //! Among hundreds of combinations some may fit a dozen figures by chance. Every figure is therefore also predicted by
@@ -15,8 +15,8 @@
 mod fit;
 mod rank;
 
-pub use fit::{Fit, FitOfFigure};
-pub use rank::{LeftOut, Readings, run};
+pub use fit::{FigureFit, Fit};
+pub use rank::{LeaveOneOut, Readings, run};
 
 /// Figures of Rendering Control that an interpretation changes, or could change.
 pub const FIGURES: [&str; 12] = ["3", "4", "4b", "5", "6", "7", "7b", "7c", "16", "16b", "16c", "17"];

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Prediction of a figure by the interpretation that fits all other figures best.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LeftOut {
+pub struct LeaveOneOut {
     /// Number of the figure.
     pub id: &'static str,
     /// Interpretation with the smallest mean error over the other figures.
@@ -30,8 +30,8 @@ pub struct Readings {
     pub analytic: Vec<Fit>,
     /// The best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
-    /// Prediction of each figure by all others, at the analytic level.
-    pub left_out: Vec<LeftOut>,
+    /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
+    pub left_out: Vec<LeaveOneOut>,
     /// Number of interpretations whose mean error equals that of the best one within the printed digits.
     pub as_good: usize,
     /// Part of a mean error that the rounding of printed digits can hide, in percent.
@@ -78,10 +78,10 @@ fn ranked(mut fits: Vec<Fit>) -> Vec<Fit> {
     fits
 }
 
-fn left_out(fits: &[Fit], id: &'static str) -> Option<LeftOut> {
+fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
     let chosen = fits.iter().min_by(|a, b| a.mean_error_without(id).total_cmp(&b.mean_error_without(id)))?;
     let figure = chosen.figures.iter().find(|figure| figure.id == id)?;
-    Some(LeftOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
+    Some(LeaveOneOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
 }
 
 /// Returns half of the last printed digit in percent, as a mean over the figures. Papers print three digits.

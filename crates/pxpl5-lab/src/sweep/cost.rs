@@ -46,15 +46,15 @@ impl Sweep {
             return nothing;
         }
         let mut work = Work::of(&plan, &scene, true);
-        if let Some(pictures_a_field) = pictures_by_form(&plan, plan.experiment(scene)) {
-            work = Work { pictures_a_field, is_by_form: true, ..work };
+        if let Some(pictures_a_field) = pictures_from_closed_form(&plan, plan.experiment(scene)) {
+            work = Work { pictures_a_field, uses_closed_form: true, ..work };
         }
         Estimate { bytes: work.bytes(), seconds: POINT + work.core_seconds() }
     }
 }
 
 /// Returns the number of pictures shown in a field by the closed form, or `None` if there is no closed form.
-fn pictures_by_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
+fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;
     let summary = (form.summary)(&experiment.level(Level::Analytic)).ok()?;

@@ -63,7 +63,7 @@ impl Header {
 }
 
 /// Maximum number of points among which the first valid point is searched. Assumed: some seconds of work.
-const MOST_LOOKED_AT: u64 = 100_000;
+const MAX_POINTS_SEARCHED: u64 = 100_000;
 
 impl Sweep {
     /// Returns the header of the sweep's rows.
@@ -73,7 +73,7 @@ impl Sweep {
     /// Returns the [`FileError`] of the first point if no point is valid.
     pub fn header(&self) -> Result<Header, FileError> {
         // The header describes the first valid point.
-        let looked_at = self.space.points().min(MOST_LOOKED_AT);
+        let looked_at = self.space.points().min(MAX_POINTS_SEARCHED);
         let mut points = (0..looked_at).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
         let axes: Vec<AxisRecord> = self.space.axes().iter().map(record).collect();

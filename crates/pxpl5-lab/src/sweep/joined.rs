@@ -18,7 +18,6 @@ const BLOCK: usize = 16 << 10;
 /// Error text for a file that can no longer be read.
 const AGAIN: &str = "cannot be read again";
 
-/// The rows of all files.
 #[derive(Debug)]
 pub(super) struct Joined {
     header: Header,

@@ -56,7 +56,7 @@ impl Store {
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
-        remove_left_over(folder);
+        remove_leftover_files(folder);
         let path = folder.join(ROWS_FILE);
         let rows = RowFile::open_or_none(&path)?;
         check_header(&path, &header, rows.header())?;
@@ -207,7 +207,7 @@ pub(super) fn write_all(
 
 /// Removes temporary files that processes left behind when they were killed. The folder is locked, so no other
 /// process uses these files.
-fn remove_left_over(folder: &Path) {
+fn remove_leftover_files(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         // Temporary names end with a process number and `.tmp`.

@@ -24,7 +24,6 @@ impl<'a> Table<'a> {
         line_of_cells(columns.map(str::to_owned))
     }
 
-    /// Returns the line of a row.
     pub(super) fn line(&self, row: &SweepRow) -> Vec<u8> {
         let status = if row.status == Status::Done { "done" } else { "failed" };
         let settings = self.parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));

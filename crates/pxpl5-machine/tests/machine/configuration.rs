@@ -115,7 +115,7 @@ fn numbers_of_firmware_are_kept_once_and_found_by_their_type() {
 #[test]
 fn parameters_tell_a_machine_apart_but_those_that_all_have() {
     let telling = |config: &MachineConfig| -> Vec<String> {
-        config.telling_parameters().into_iter().map(|parameter| parameter.path).collect()
+        config.identifying_parameters().into_iter().map(|parameter| parameter.path).collect()
     };
     let all: Vec<String> = usual().parameters().into_iter().map(|parameter| parameter.path).collect();
     let own: Vec<String> = all.into_iter().filter(|path| !path.starts_with("i860.")).collect();

@@ -9,7 +9,7 @@ use crate::rig::{
 };
 use pxpl5_machine::{Board, Machine};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, CopyWay, NodeId, RegionPixels};
+use pxpl5_wire::{Body, CopyPath, NodeId, RegionPixels};
 
 /// Cycle of the boards' 40 MHz clock (TR94).
 const CYCLE: Span = Span::from_ns(25);
@@ -91,7 +91,7 @@ fn whats(machine: &mut Machine, of: Board) -> Vec<&'static str> {
 /// A region takes sixteen messages of 1,024 words. The last one is acknowledged.
 #[test]
 fn a_renderer_copies_the_region_that_it_is_told_to() {
-    for (way, stored) in [(CopyWay::FromPixelMemory, false), (CopyWay::ThroughBacking, true)] {
+    for (way, stored) in [(CopyPath::FromPixelMemory, false), (CopyPath::ThroughBacking, true)] {
         let mut machine = machine();
         let (length, list) = copy_command(way, target(SCREEN, 0));
         load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[1], length, list)]);
@@ -111,7 +111,7 @@ fn a_renderer_copies_the_region_that_it_is_told_to() {
 #[test]
 fn a_renderers_answer_is_an_event_of_the_ring() {
     let mut machine = machine();
-    let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
+    let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 0));
     load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
     machine.switch_on();
     let all = happenings(&mut machine, us(1_000));
@@ -126,7 +126,7 @@ fn a_renderers_answer_is_an_event_of_the_ring() {
 #[test]
 fn who_sends_to_a_renderer_goes_on_when_its_fifo_has_the_message() {
     let mut machine = machine();
-    let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 0));
+    let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 0));
     load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);
     machine.switch_on();
     let all = happenings(&mut machine, us(500));

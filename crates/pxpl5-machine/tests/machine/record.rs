@@ -9,7 +9,7 @@ use pxpl5_framebuffer::NtscDisplay;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, Record, Shown, StageSpan, Transfer};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyWay, NodeId, PeriodNumber, PictureNumber, SurfaceId};
+use pxpl5_wire::{CopyPath, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 
 #[test]
 fn a_record_has_the_boards_and_numbers_of_its_machine() {
@@ -124,7 +124,7 @@ fn what_is_before_an_instant_can_be_given_up() {
         swapped(360, 1, 4),
         swapped(460, 0, 5),
     ]);
-    machine.forget_before(us(350));
+    machine.discard_before(us(350));
     let observation = machine.record().observation();
     assert!(observation.arrivals.is_empty());
     let ticks = |port| observation.swaps.iter().filter(move |swap| swap.port == port).map(|swap| swap.tick.0);
@@ -137,7 +137,7 @@ fn what_is_before_an_instant_can_be_given_up() {
 fn with_traffic() -> Record {
     let mut machine = machine();
     machine.record_traffic();
-    let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
+    let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 1));
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 4, words(&[0; 4])), (RENDERERS[1], length, list)]);
     machine.switch_on();
     machine.run_until(us(1_500)).expect("it goes on");

@@ -11,7 +11,7 @@ use pxpl5_machine::{Board, HostLine, Machine, MachineConfig};
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_sim::{Phase, Span, Time};
 use pxpl5_wire::{
-    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, NodeId, PeriodNumber,
+    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PeriodNumber,
     PictureNumber, RegionGrid, RegionId,
 };
 use std::cell::RefCell;
@@ -213,7 +213,7 @@ pub(crate) fn target(frame_buffer: NodeId, picture: u32) -> CopyTarget {
 }
 
 /// Returns the length in words and the list of a command that copies a region.
-pub(crate) fn copy_command(way: CopyWay, target: CopyTarget) -> (u32, Body) {
+pub(crate) fn copy_command(way: CopyPath, target: CopyTarget) -> (u32, Body) {
     let words = CommandKind::CopyRegion.words();
     let order = CopyOrder { target, context: 0, way, content: CopyContent::Colour, acknowledge: None };
     let run = CommandRun { opcode: CommandKind::CopyRegion as u8, words_each: words, count: 1 };
@@ -293,7 +293,7 @@ pub(crate) fn words(words: &[u32]) -> Body {
 pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board, &'static str)> {
     let mut all = Vec::new();
     loop {
-        let next = machine.next_happening();
+        let next = machine.next_event_description();
         let Some(time) = machine.step_before(until).expect("it goes on") else { return all };
         let next = next.expect("something happened");
         assert_eq!(next.time, time, "what was told to come next came");

@@ -5,9 +5,9 @@ use crate::rig::{
     copy_command, happenings, load, load_sender, machine, say, target, us, words,
 };
 use pxpl5_gp::{CodeVersion, Processor, RING_MEMORY, Stage};
-use pxpl5_machine::{Board, Machine, SameThread, Saving};
+use pxpl5_machine::{Board, Machine, Optimization, SameThread};
 use pxpl5_sim::{Span, Time, TraceHash};
-use pxpl5_wire::{Body, CopyWay, NodeId, PeriodNumber, PictureNumber, RegionPixels};
+use pxpl5_wire::{Body, CopyPath, NodeId, PeriodNumber, PictureNumber, RegionPixels};
 use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -68,7 +68,7 @@ fn a_run_ends_before_its_end_and_goes_on_from_there() {
     say(&mut machine, &[(10, Say::Later { us: 5, picture: 1 })]);
     machine.switch_on();
     machine.run_until(us(10)).expect("it goes on");
-    assert_eq!(machine.next_happening().map(|next| next.time), Some(us(10)), "the end is not part of it");
+    assert_eq!(machine.next_event_description().map(|next| next.time), Some(us(10)), "the end is not part of it");
     assert_eq!(machine.step_before(us(10)), Ok(None));
     assert_eq!(machine.step_before(us(11)), Ok(Some(us(10))));
     machine.run_until(us(16)).expect("it goes on");
@@ -167,7 +167,7 @@ fn it_is_at_rest_where_only_displays_go_on() {
 #[test]
 fn a_machine_of_which_every_edge_is_an_event_rests_too() {
     let mut machine = machine();
-    machine.give_up(Saving::IdleBoards);
+    machine.disable(Optimization::IdleBoards);
     say(&mut machine, &[(60, Say::Later { us: 30, picture: 1 })]);
     machine.switch_on();
     // Each clock edge polls the ring, which arbitrates in the same instant.
@@ -239,7 +239,7 @@ fn a_worker_computes_every_region_that_is_copied_once() {
             machine.compute_all_pixels(Box::new(SameThread::default()));
         }
         let copies = RENDERERS.map(|renderer| {
-            let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
+            let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 1));
             (renderer, length, list)
         });
         load_sender(&mut machine, FIRST_GP, copies.into());

@@ -3,26 +3,26 @@
 //! The workspace's `tests/savings.rs` shows that no optimization changes a result.
 
 use crate::rig::{FIRST_GP, SECOND_GP, happenings, load_sender, machine, us, words};
-use pxpl5_machine::{Board, Saving};
+use pxpl5_machine::{Board, Optimization};
 use pxpl5_sim::Time;
 
 #[test]
 fn a_saving_is_known_by_the_name_that_it_prints() {
-    for saving in Saving::ALL {
+    for saving in Optimization::ALL {
         assert_eq!(saving.name().parse(), Ok(saving));
         assert_eq!(saving.to_string(), saving.name());
         // Names on the command line consist of small letters and hyphens.
         assert!(saving.name().bytes().all(|b| b == b'-' || b.is_ascii_lowercase()));
     }
-    let all = Saving::ALL.map(Saving::name).join(", ");
-    assert_eq!("sleep".parse::<Saving>(), Err(format!("expected {all}, found \"sleep\"")));
+    let all = Optimization::ALL.map(Optimization::name).join(", ");
+    assert_eq!("sleep".parse::<Optimization>(), Err(format!("expected {all}, found \"sleep\"")));
 }
 
 /// The boards' clock of 40 MHz has forty edges per microsecond.
 #[test]
 fn without_sleep_every_board_is_asked_at_every_edge() {
     let mut machine = machine();
-    machine.give_up(Saving::IdleBoards);
+    machine.disable(Optimization::IdleBoards);
     machine.switch_on();
     let all = happenings(&mut machine, us(1));
     let edges = all.iter().filter(|(_, _, what)| *what == "edge of the boards' clock");
@@ -32,7 +32,7 @@ fn without_sleep_every_board_is_asked_at_every_edge() {
 #[test]
 fn without_the_computed_end_every_word_is_an_event() {
     let mut machine = machine();
-    machine.give_up(Saving::Transfers);
+    machine.disable(Optimization::Transfers);
     load_sender(&mut machine, FIRST_GP, vec![(SECOND_GP, 4, words(&[0; 4]))]);
     machine.switch_on();
     let all = happenings(&mut machine, us(50));

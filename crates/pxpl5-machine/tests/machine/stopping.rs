@@ -7,7 +7,7 @@ use crate::rig::{
 use pxpl5_gp::Fault;
 use pxpl5_machine::{DEADLOCK_TICKS, Machine, RunError};
 use pxpl5_sim::{Blocked, Span, Time};
-use pxpl5_wire::{CopyWay, NodeId};
+use pxpl5_wire::{CopyPath, NodeId};
 
 const LONG: Time = Time(100_000 * 1_000_000);
 
@@ -103,7 +103,7 @@ fn everybody_who_waits_is_told_with_what_he_waits_for() {
     load_waiting(&mut machine, NodeId(0));
     // Both renderers copy to the same frame buffer. One of them occupies the port, so the other copy cannot begin.
     let copies = RENDERERS.map(|renderer| {
-        let (length, list) = copy_command(CopyWay::FromPixelMemory, target(SCREEN, 1));
+        let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 1));
         (renderer, length, list)
     });
     load_sender(&mut machine, SECOND_GP, copies.into());

@@ -381,11 +381,11 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
         region: RegionId(place as u16),
         picture: PictureNumber::from_words(low, high),
     };
-    if sensible(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
+    if is_valid_target(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }
 
 /// Returns true if the region exists and fits the array and the 16-bit coordinates.
-fn sensible(target: &CopyTarget) -> bool {
+fn is_valid_target(target: &CopyTarget) -> bool {
     let grid = &target.grid;
     let picture = 1..=1 << 16;
     let region = 1..=pxpl5_wire::REGION_SIZE;

@@ -4,7 +4,7 @@ use super::Lanes;
 use super::columns::ContextColumns;
 use super::shade::ShadeAll;
 use super::sphere::{DrawSphere, PaintGouraudSphere, PaintPhongSphere};
-use super::template::starts_anew;
+use super::template::next_enables_all;
 use crate::array::Executed;
 use crate::command::{
     Command, CommandKind, PhongSphereCommand, Shade, ShadeFields, SphereBody, SphereCommand, SphereScratch,
@@ -30,7 +30,7 @@ impl Lanes {
     ) -> Option<usize> {
         let (command, used) = Command::decode(words, 0, &self.layout).ok()?;
         // Enable must be computed only if a later command can read it.
-        let keep = !starts_anew(words.get(used));
+        let keep = !next_enables_all(words.get(used));
         match command {
             Command::Sphere(sphere) => self.sphere(&sphere, columns, keep)?,
             Command::PhongSphere(sphere) => self.phong_sphere(&sphere, columns, keep)?,

@@ -59,7 +59,7 @@ pub(super) struct TrianglePainter<'a, P> {
 }
 
 /// The result of the depth test of a vector of pixels.
-pub(super) struct Tested<V: SimdVector> {
+pub(super) struct DepthTest<V: SimdVector> {
     pub(super) old: V,
     pub(super) new: V,
     pub(super) mask: V::Mask,
@@ -73,9 +73,9 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         at: usize,
         [p, q, r]: [Walk<V>; 3],
         depth: Walk<V>,
-    ) -> Tested<V> {
+    ) -> DepthTest<V> {
         let old = S::load::<V>(self.z, at);
         let new = depth.value.shift_right(self.z_shift.into());
-        Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
+        DepthTest { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
 }

@@ -11,9 +11,9 @@ pub(super) trait Shape {
 }
 
 /// Pixels of a vector side by side in one row.
-pub(super) struct InRow;
+pub(super) struct SingleRow;
 
-impl Shape for InRow {
+impl Shape for SingleRow {
     #[inline(always)]
     fn load<V: SimdVector>(column: &Values, at: usize) -> V {
         V::load(&column.0[at..])
@@ -26,9 +26,9 @@ impl Shape for InRow {
 }
 
 /// Pixels of a vector in groups of four: each group lies below the previous one.
-pub(super) struct InFours;
+pub(super) struct QuadRows;
 
-impl Shape for InFours {
+impl Shape for QuadRows {
     #[inline(always)]
     fn load<V: SimdVector>(column: &Values, at: usize) -> V {
         V::load_fours(&column.0[at..])

@@ -5,7 +5,7 @@
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
-use super::shape::{InFours, Shape};
+use super::shape::{QuadRows, Shape};
 
 use crate::simd::{FOUR, SimdVector};
 use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
@@ -98,10 +98,10 @@ impl SlimTriangles {
             let second = walk::<V>(q, self.edges[1][i], i, down);
             let third = walk::<V>(r, self.edges[2][i], i, down);
             let tested =
-                painter.test::<V, InFours>(at, [first, second, third], walk(depth, self.planes[0][i], i, down));
+                painter.test::<V, QuadRows>(at, [first, second, third], walk(depth, self.planes[0][i], i, down));
             if V::any_of(tested.mask, tested.mask) {
-                InFours::store(tested.new, tested.mask, tested.old, painter.z, at);
-                painter.paint.store::<V, InFours>(&self.components(batch, i, down), at, tested.mask);
+                QuadRows::store(tested.new, tested.mask, tested.old, painter.z, at);
+                painter.paint.store::<V, QuadRows>(&self.components(batch, i, down), at, tested.mask);
             }
         }
     }

@@ -89,7 +89,7 @@ impl Templates {
 }
 
 /// Returns true if the next instruction is *enable all*, with any label. Then the current Enable is never read.
-pub(super) fn starts_anew(next: Option<&Word>) -> bool {
+pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))
 }

@@ -2,10 +2,10 @@
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
-use super::painter::{PaintTriangle, Tested, TrianglePainter, Walk};
-use super::shape::{InRow, Shape};
+use super::painter::{DepthTest, PaintTriangle, TrianglePainter, Walk};
+use super::shape::{Shape, SingleRow};
 use super::slim::SlimTriangles;
-use super::template::{Template, starts_anew};
+use super::template::{Template, next_enables_all};
 use crate::command::{COMPONENTS_AT, DEPTH_AT, EDGES_AT};
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
@@ -88,12 +88,12 @@ impl<const N: usize> Surface for &[Word; N] {
 }
 
 /// The surface of triangle `i` of a batch.
-struct OfBatch<'a> {
+struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
 }
 
-impl Surface for OfBatch<'_> {
+impl Surface for BatchSurface<'_> {
     #[inline(always)]
     fn depth(&self) -> Linear {
         self.batch.planes[0].get(self.i)
@@ -128,7 +128,7 @@ impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> 
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
         // Every triangle except the last is followed by another one, which sets Enable anew.
-        let read_later = !starts_anew(self.words.get(drawn * N));
+        let read_later = !next_enables_all(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(LANES) {
             let mut edges = Edges::default();
@@ -161,7 +161,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
                 slim.draw::<V, P>(&mut self.painter, self.batch, &edges, i);
                 continue;
             }
-            let surface = OfBatch { batch: self.batch, i };
+            let surface = BatchSurface { batch: self.batch, i };
             let triangle = CurrentTriangle { edges: edges.get(i), surface, keep: false };
             self.painter.triangle::<V, _>(&triangle, &boxes, i);
         }
@@ -240,16 +240,16 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
-            let upper = self.test::<V, InRow>(at[0], [first, second, third], depth);
-            let lower = self.test::<V, InRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            let upper = self.test::<V, SingleRow>(at[0], [first, second, third], depth);
+            let lower = self.test::<V, SingleRow>(at[1], [lower[0], lower[1], lower[2]], lower[3]);
             // Compute colours only if some pixel of either row passes.
             if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(&triangle.surface, x, y);
                 self.nearer(&upper, at[0], triangle.keep);
-                self.paint.store::<V, InRow>(&walks, at[0], upper.mask);
+                self.paint.store::<V, SingleRow>(&walks, at[0], upper.mask);
                 let walks = components_below(&triangle.surface, &walks);
                 self.nearer(&lower, at[1], triangle.keep);
-                self.paint.store::<V, InRow>(&walks, at[1], lower.mask);
+                self.paint.store::<V, SingleRow>(&walks, at[1], lower.mask);
             }
             first = first.below(2 * p);
             second = second.below(2 * q);
@@ -268,10 +268,10 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         // Colours are stored only if some pixel of the vector passes.
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
-            let tested = self.test::<V, InRow>(at, [first, second, third], depth);
+            let tested = self.test::<V, SingleRow>(at, [first, second, third], depth);
             if V::any_of(tested.mask, tested.mask) {
                 self.nearer(&tested, at, keep);
-                self.paint.store::<V, InRow>(&walks, at, tested.mask);
+                self.paint.store::<V, SingleRow>(&walks, at, tested.mask);
             }
             first.advance();
             second.advance();
@@ -284,7 +284,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
     }
 
     #[inline(always)]
-    fn nearer<V: SimdVector>(&mut self, tested: &Tested<V>, at: usize, keep: bool) {
+    fn nearer<V: SimdVector>(&mut self, tested: &DepthTest<V>, at: usize, keep: bool) {
         tested.new.store(tested.mask, tested.old, &mut self.z.0[at..]);
         if keep {
             V::store_mask(tested.mask, &mut self.enable.rows_in_use()[at..]);

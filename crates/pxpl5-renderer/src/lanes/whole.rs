@@ -3,7 +3,7 @@
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
 use super::painter::TrianglePainter;
-use super::template::{CommandCost, starts_anew};
+use super::template::{CommandCost, next_enables_all};
 use super::triangle::{DrawBatch, DrawTriangles, PaintGouraud, PaintPhong};
 use crate::array::Executed;
 use crate::command::{COMPONENTS_AT, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
@@ -72,7 +72,7 @@ impl Lanes {
         for (column, value) in [(columns.colour, colour & 0xff_ffff), (columns.z, depth & far)] {
             self.vectors.run(Fill { column: self.columns.values_mut(column), value });
         }
-        if !starts_anew(behind.first()) {
+        if !next_enables_all(behind.first()) {
             self.enable.fill(true);
         }
         Some((template.cost, 1))

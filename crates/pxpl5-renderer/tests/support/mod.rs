@@ -7,8 +7,8 @@ use pxpl5_renderer::{
 };
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{
-    Body, CommandContent, CommandList, CommandRun, CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, Message, NodeId,
-    PictureNumber, RegionGrid, RegionId, Word,
+    Body, CommandContent, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, Message,
+    NodeId, PictureNumber, RegionGrid, RegionId, Word,
 };
 use std::sync::Arc;
 
@@ -112,7 +112,7 @@ pub(crate) fn list_of(commands: &[Command], copies: &[CopyOrder]) -> CommandList
     CommandList { runs, context: 0, copies: copies.to_vec(), content }
 }
 
-pub(crate) fn order(region: u16, way: CopyWay, content: CopyContent) -> CopyOrder {
+pub(crate) fn order(region: u16, way: CopyPath, content: CopyContent) -> CopyOrder {
     let (grid, lines) = (GRID, Lines::Frame);
     let (region, picture) = (RegionId(region), PictureNumber(17));
     let target = CopyTarget { frame_buffer: DISPLAY, buffer: 1, lines, grid, region, picture };

@@ -4,7 +4,7 @@ use super::face_plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
 use glam::DVec3;
 use pphigs::{DisplayList, DisplayStructure};
-use priority_rendering::{Objects, PriorityTiming, SeenObject, Threshold};
+use priority_rendering::{ObjectView, Objects, PriorityTiming, Threshold};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
@@ -65,7 +65,7 @@ impl ByObjects {
     fn period_s(&self, moves: bool, structure: usize, eye: DVec3, speed: f64) -> f64 {
         let ObjectSphere { centre, radius_m } = self.spheres[structure];
         let animation_s = if moves { 0.0 } else { f64::INFINITY };
-        let seen = SeenObject { distance_m: eye.distance(centre), radius_m, speed, turn: 0.0, animation_s };
+        let seen = ObjectView { distance_m: eye.distance(centre), radius_m, speed, turn: 0.0, animation_s };
         self.threshold.period(&seen).least()
     }
 }

@@ -1,10 +1,10 @@
 //! Plans of a host that requests updates: either the whole scene in one memory, or the memories that a policy finds
 //! due.
 
-use crate::face_notes::{FaceNote, FaceNotes};
+use crate::face_notes::{RequestedUpdate, RequestedUpdates};
 use crate::pipeline::Setup;
 use address_recalculation::Scan;
-use cube_control::{FaceUpdate, FaceWarp, Planned};
+use cube_control::{FaceUpdate, FaceWarp, HostAction};
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
@@ -13,13 +13,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Function that returns the next action of a host that is ready for an update.
-pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
+pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
 
 /// State that all plans need: views, frame starts, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
-    pub(super) notes: FaceNotes,
+    pub(super) notes: RequestedUpdates,
     /// Number of updates of each memory so far.
     sent: Vec<u64>,
     /// True if a structure is attached to the head. Its position then depends on the head's direction.
@@ -44,7 +44,7 @@ impl Updates {
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
         // The record tells later which update each swap has shown.
-        self.notes.write(FaceNote {
+        self.notes.write(RequestedUpdate {
             picture: number,
             view: view.number,
             memory: due.memory,
@@ -104,10 +104,10 @@ impl Full {
         Self { updates, structures }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> Planned {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
         match (self.updates.setup.starts)(now) {
-            None => Planned::Nothing,
-            Some(start) if start > now => Planned::Wait(start),
+            None => HostAction::Nothing,
+            Some(start) if start > now => HostAction::Wait(start),
             // The host is ready: request a redraw of everything.
             Some(_) => {
                 let due = Due {
@@ -118,7 +118,7 @@ impl Full {
                     view: None,
                     warp: None,
                 };
-                Planned::Send(self.updates.of_memory(number, now, &due))
+                HostAction::Send(self.updates.of_memory(number, now, &due))
             }
         }
     }
@@ -149,18 +149,18 @@ impl<P: DuePolicy> Cycles<P> {
         Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> Planned {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
         if self.pending.is_empty() {
             let field = self.scan.field_at(now);
             if self.began.is_some_and(|began| began >= field) {
-                return Planned::Wait(self.scan.retrace(field.next()));
+                return HostAction::Wait(self.scan.retrace(field.next()));
             }
             self.began = Some(field);
             self.pending = self.policy.begin(&self.updates, number, now);
         }
         match self.pending.pop_front() {
-            Some(due) => Planned::Send(self.updates.of_memory(number, now, &due)),
-            None => Planned::Wait(self.scan.retrace(self.scan.field_at(now).next())),
+            Some(due) => HostAction::Send(self.updates.of_memory(number, now, &due)),
+            None => HostAction::Wait(self.scan.retrace(self.scan.field_at(now).next())),
         }
     }
 }

@@ -7,10 +7,10 @@ use super::face_objects::ByObjects;
 use super::face_plan::{Cycles, Full, Plan, Updates};
 use super::ideal_faces::{All, IdealFaces, seen_next};
 use super::{region_has_room, shading_value, swapped_in};
-use crate::cut::CutScene;
+use crate::cut::SegmentedScene;
 use crate::keys::KeyValue;
-use crate::latched_head::{LatchedHead, ORIENTATION_WORDS};
-use crate::picture_ends::PictureEnd;
+use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming};
+use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::views::{Poses, ReportTimes};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
@@ -249,7 +249,7 @@ const ORIENTATION_PORT: usize = 0;
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
-    latched: LatchedHead,
+    latched: OrientationTiming,
 }
 
 impl fmt::Debug for OrientationLine {
@@ -319,7 +319,7 @@ impl Pipeline for FacePipeline {
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
-        if config.displays.first().is_none_or(|display| !display.takes_faces()) {
+        if config.displays.first().is_none_or(|display| !display.shows_cube_faces()) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,
                 FaceSource::Ideal => ArpConfig::IDEAL,
@@ -341,12 +341,16 @@ impl Pipeline for FacePipeline {
         config
     }
 
-    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<CutScene>, ConfigError> {
+    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
         if !self.has_cells() {
             return Ok(None);
         }
         let side_m = priority_timing(config)?.cell_m;
-        let cut = if self.segmented { CutScene::segmented(scene, side_m) } else { CutScene::whole(scene, side_m) };
+        let cut = if self.segmented {
+            SegmentedScene::segmented(scene, side_m)
+        } else {
+            SegmentedScene::whole(scene, side_m)
+        };
         cut.map(Some).map_err(refused)
     }
 
@@ -397,7 +401,7 @@ impl Pipeline for FacePipeline {
         pictures
     }
 
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         true
     }
 
@@ -444,7 +448,7 @@ impl FacePipeline {
     /// line.
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
-        if let Some(latched) = LatchedHead::before(machine.record().display(), link, setup.aim) {
+        if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
             let reports = Arc::clone(&setup.reports);
             let poses = Arc::clone(&setup.poses);
             machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
@@ -483,7 +487,7 @@ const fn drawn_at_once(shown: Shown) -> PictureTimes {
         transform_at: drawn,
         copied_at: Some(drawn),
         shown_at: shown.at,
-        end: PictureEnd::Shown,
+        end: PictureResult::Shown,
     }
 }
 

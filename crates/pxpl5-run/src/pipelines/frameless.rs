@@ -3,7 +3,7 @@
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::picture_ends::PictureEnd;
+use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
@@ -160,7 +160,7 @@ impl Pipeline for Frameless {
                 transform_at: mark.time,
                 copied_at: Some(*copied_at),
                 shown_at: next_light(video, target, *copied_at),
-                end: PictureEnd::of(*blocks == batch, true),
+                end: PictureResult::of(*blocks == batch, true),
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
@@ -169,7 +169,7 @@ impl Pipeline for Frameless {
         times
     }
 
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         true
     }
 

@@ -4,7 +4,7 @@ use super::face_plan::{Due, DuePolicy, Plan, Updates};
 use crate::latched_head::lights_of;
 use crate::pipeline::Setup;
 use address_recalculation::{CubeFace, Scan};
-use cube_control::{FaceUpdate, Faces, Planned, WarpedLists, face_view};
+use cube_control::{FaceUpdate, Faces, HostAction, WarpedLists, face_view};
 use pphigs::{DisplayList, FrameView};
 use pxpl5_machine::HostLine;
 use pxpl5_oracle::ideal_picture_of;
@@ -16,8 +16,8 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Time before a retrace at which the ideal renderer requests views. It is the shortest time of the simulation, one
-/// picosecond.
+/// Time before a retrace at which the ideal renderer requests views. One picosecond is the shortest time of the
+/// simulation.
 const BEFORE_RETRACE: Span = Span(1);
 
 /// Source of ideal faces: at each retrace, it writes the updates that a policy requests into the display's memories.
@@ -47,7 +47,7 @@ impl HostLine for IdealFaces {
 
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
         let mut messages = Vec::new();
-        while let Planned::Send(update) = (self.plan)(self.next, now) {
+        while let HostAction::Send(update) = (self.plan)(self.next, now) {
             self.next = self.next.next();
             messages.extend(self.draw(update));
         }

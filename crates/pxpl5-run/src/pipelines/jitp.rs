@@ -2,7 +2,7 @@
 
 use super::{late_regions, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::picture_ends::PictureEnd;
+use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
@@ -210,13 +210,13 @@ impl Pipeline for Jitp {
                 transform_at: mark.time,
                 copied_at: middle_at,
                 shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
-                end: PictureEnd::of(in_period == grid.regions(), in_time == grid.regions()),
+                end: PictureResult::of(in_period == grid.regions(), in_time == grid.regions()),
             }
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }
 
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         true
     }
 

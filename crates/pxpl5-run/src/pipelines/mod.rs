@@ -20,7 +20,7 @@ pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::picture_ends::PictureEnd;
+use crate::picture_ends::PictureResult;
 use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
 use pphigs::Shading;
@@ -108,7 +108,7 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
         transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
         shown_at,
-        end: PictureEnd::Shown,
+        end: PictureResult::Shown,
     })
 }
 

@@ -172,7 +172,7 @@ impl Pipeline for RenderingControl {
         shown.filter_map(|(frame, at)| swapped_in(&stages, frame, at)).collect()
     }
 
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         true
     }
 

@@ -2,11 +2,11 @@
 
 use super::{late_regions, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::picture_ends::PictureEnd;
+use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
-use pxpl5_display::LightSpan;
+use pxpl5_display::LightTimes;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
@@ -212,9 +212,9 @@ impl Pipeline for Slats {
             // Under a backup, the swaps tell in which period the picture was shown.
             let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
             let picture_end = match (&backup, shown) {
-                (None, _) => PictureEnd::of(in_its_period, !late.contains(&field)),
-                (Some(_), Some(_)) => PictureEnd::Shown,
-                (Some(_), None) => PictureEnd::of(in_its_period, false),
+                (None, _) => PictureResult::of(in_its_period, !late.contains(&field)),
+                (Some(_), Some(_)) => PictureResult::Shown,
+                (Some(_), None) => PictureResult::of(in_its_period, false),
             };
             PictureTimes {
                 picture: mark.picture,
@@ -232,13 +232,13 @@ impl Pipeline for Slats {
             let field = times.picture.period_drawn_for();
             let shown = record.display().period_at(times.shown_at);
             let last =
-                if backup.is_some() && times.end != PictureEnd::Shown { field.0 + LATER_RETRACES } else { shown.0 };
+                if backup.is_some() && times.end != PictureResult::Shown { field.0 + LATER_RETRACES } else { shown.0 };
             record.tick(PeriodNumber(last).next()) <= end
         };
         times.filter(judged).collect()
     }
 
-    fn can_forget(&self) -> bool {
+    fn can_discard_records(&self) -> bool {
         true
     }
 
@@ -255,7 +255,7 @@ impl Pipeline for Slats {
     }
 
     /// Returns the time span of one field. A field is scanned once, and the next field has the other lines.
-    fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightSpan {
+    fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
 

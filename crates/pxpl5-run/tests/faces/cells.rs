@@ -5,8 +5,8 @@ use address_recalculation::{CubeFace, FaceSet, Lens, TexelAddress};
 use glam::{DVec3, Vec3};
 use pxpl5_machine::{MachineConfig, Record};
 use pxpl5_run::{
-    CutScene, Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, PipelineSettings, Pixels,
-    Registry,
+    Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, PipelineSettings, Pixels, Registry,
+    SegmentedScene,
 };
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin};
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ fn area(scene: &Scene) -> f64 {
 fn pieces_are_all_of_the_scene_lie_in_their_cells_and_meet_bit_for_bit() {
     for name in ["gallery", "mig", "molecules"] {
         let scene = builtin(name).expect("built in");
-        let cut = CutScene::segmented(&scene, 5.0).expect("it can be cut");
+        let cut = SegmentedScene::segmented(&scene, 5.0).expect("it can be cut");
         assert!((area(&cut.scene) / area(&scene) - 1.0).abs() < 1e-6, "{name}");
         assert_eq!(cut.scene.spheres().len(), scene.spheres().len());
         assert_eq!(cut.scene.edits_at(7).len(), scene.edits_at(7).len());

@@ -18,8 +18,8 @@ const COVERED: f64 = 1.0;
 /// Distance of the eyes from the centre of the head, metres: half of the greatest separation of eyes, 74 mm.
 const EYES_M: f64 = 0.037;
 
-/// Distance from a square's centre to the farthest corner coordinate of the smallest triangle around the square, for
-/// half a side of 1:
+/// Farthest reach of the smallest triangle around a square, from the square's centre along one axis, if half of the
+/// square's side is 1. The value is 1 + sqrt(2).
 const REACH: f64 = 1.0 + std::f64::consts::SQRT_2;
 
 pub(super) fn scene(count: u32) -> Scene {

@@ -72,6 +72,7 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     for meridian in 0..=HALF {
         push_hit(mesh, Ray::new(down, meridian as f64 / MERIDIANS as f64));
     }
+    // Mirror the half in reverse order, without its two end points.
     let mirrored = DVec3::new(-1.0, 1.0, 1.0);
     for meridian in (first + 1..first + HALF).rev() {
         let position = mesh.positions[meridian];

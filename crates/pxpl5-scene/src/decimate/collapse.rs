@@ -14,7 +14,7 @@ const LEAST_COSINE: f64 = 0.2;
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
     /// True if triangles may turn over.
-    pub(super) may_fold: bool,
+    pub(super) may_flip_triangles: bool,
     /// True if fewer triangles than wanted may remain. Collapsing an edge inside a surface removes two triangles.
     pub(super) may_overshoot: bool,
 }
@@ -52,13 +52,13 @@ impl PartialEq for Candidate {
 impl Eq for Candidate {}
 
 /// A surface during decimation, with the quadric and the number of changes of each point.
-pub(super) struct Collapsing<'s, 'a> {
+pub(super) struct Decimator<'s, 'a> {
     surface: &'s mut Surface<'a>,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
 }
 
-impl<'s, 'a> Collapsing<'s, 'a> {
+impl<'s, 'a> Decimator<'s, 'a> {
     pub(super) fn new(surface: &'s mut Surface<'a>) -> Self {
         let points = surface.places.len();
         let mut quadrics = vec![Quadric::default(); points];
@@ -107,7 +107,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
             let Candidate { from, onto, changes, .. } = candidate;
             // An outdated cost is dropped: a newer candidate for these points is in the queue.
             let is_current = changes == [self.changes[from as usize], self.changes[onto as usize]];
-            if !is_current || !self.may_go(from, onto, wanted, rules) {
+            if !is_current || !self.may_collapse(from, onto, wanted, rules) {
                 continue;
             }
             self.surface.collapse(from, onto);
@@ -136,7 +136,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
 
     /// Returns true if a collapse keeps the surface intact: nothing closed opens, no triangle is doubled, no piece
     /// vanishes.
-    fn may_go(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
+    fn may_collapse(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
         let surface = &self.surface;
         let (going, staying): (Vec<_>, Vec<_>) = surface.round(from).partition(|(_, points)| points.contains(&onto));
         let leaves_too_few = surface.left < wanted + going.len();
@@ -153,7 +153,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         if common != opposite.len() || vanishes || !self.keeps_borders(from, onto, &own) {
             return false;
         }
-        staying.iter().all(|(_, points)| self.may_move(*points, from, onto, rules.may_fold))
+        staying.iter().all(|(_, points)| self.may_move(*points, from, onto, rules.may_flip_triangles))
     }
 
     /// Returns true if the borders stay in place. A point on a border may move only along it. A point where borders
@@ -165,7 +165,7 @@ impl<'s, 'a> Collapsing<'s, 'a> {
     }
 
     /// Returns true if a triangle survives the move of one of its points: it is neither doubled nor folded over.
-    fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_fold: bool) -> bool {
+    fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_flip_triangles: bool) -> bool {
         let moved = points.map(|point| if point == from { onto } else { point });
         let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));
         if is_degenerate(moved) || self.surface.round(onto).any(is_same) {
@@ -173,6 +173,6 @@ impl<'s, 'a> Collapsing<'s, 'a> {
         }
         let before = self.surface.normal(points);
         let after = self.surface.normal(moved);
-        may_fold || after.dot(before) > LEAST_COSINE * after.length() * before.length()
+        may_flip_triangles || after.dot(before) > LEAST_COSINE * after.length() * before.length()
     }
 }

@@ -13,7 +13,7 @@ mod surface;
 
 use std::ops::Range;
 
-use collapse::{Collapsing, Rules};
+use collapse::{Decimator, Rules};
 use surface::Surface;
 
 use crate::error::SceneError;
@@ -59,10 +59,10 @@ const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
 fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     let mut surface = Surface::new(scene);
     // Later passes allow more damage: first too few triangles, then folded ones.
-    let mut collapsing = Collapsing::new(&mut surface);
+    let mut collapsing = Decimator::new(&mut surface);
     let passes = [(false, false), (false, true), (true, true)];
-    for (may_fold, may_overshoot) in passes {
-        collapsing.until(wanted, Rules { may_fold, may_overshoot });
+    for (may_flip_triangles, may_overshoot) in passes {
+        collapsing.until(wanted, Rules { may_flip_triangles, may_overshoot });
     }
     drop_pieces(&mut surface, wanted);
     drop_triangles(&mut surface, wanted);
@@ -77,6 +77,7 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     let pieces = surface.pieces();
     let areas: Vec<f64> = pieces.iter().map(|piece| piece.iter().map(|&t| area(surface, t)).sum()).collect();
     let order = smallest_first(&areas);
+    // The largest piece always stays.
     for index in order.into_iter().take(pieces.len() - 1) {
         if surface.left <= wanted {
             return;

@@ -114,6 +114,7 @@ impl<'a> Surface<'a> {
         let moved: Vec<(u32, [u32; 3])> = self.round(from).collect();
         self.around[from as usize].clear();
         for (triangle, points) in moved {
+            // A triangle with both points loses its area. Others get a vertex at the new point.
             if points.contains(&onto) {
                 self.remove(triangle, points);
             } else if let Some(corners) = self.triangles[triangle as usize] {

@@ -29,9 +29,10 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
     let path = path.as_ref();
     let file = path.display().to_string();
     let Some(format) = Format::of_path(path) else {
-        return Err(not_a_model(path, file));
+        return Err(error_of_path(path, file));
     };
     let metadata = fs::metadata(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
+    // Reading a device or a pipe might never end.
     let kind = metadata.file_type();
     if !kind.is_file() {
         let found = if kind.is_dir() { "a directory" } else { "a device or a pipe" };
@@ -42,7 +43,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
 }
 
 /// Returns the most helpful error for a path without a known extension.
-fn not_a_model(path: &Path, file: String) -> LoadError {
+fn error_of_path(path: &Path, file: String) -> LoadError {
     match fs::metadata(path) {
         Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },
         Err(source) if path.extension().is_none() => LoadError::Io { file, source },

@@ -87,16 +87,16 @@ pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// Makes a scene of a model that is already fitted to the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
-    seen_by(seeing_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
+    seen_by(motion_for_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
 }
 
 /// Returns the motion of a head that looks at a fitted model.
-pub(super) fn seeing_fitted() -> HeadMotion {
-    HeadMotion::seeing_whole(Vec3::ZERO, IMPORT_RADIUS_M)
+pub(super) fn motion_for_fitted() -> HeadMotion {
+    HeadMotion::always_visible(Vec3::ZERO, IMPORT_RADIUS_M)
 }
 
 /// Returns the motion of a head that stands at the origin of a model's coordinates.
-pub(super) fn standing_at_the_origin() -> HeadMotion {
+pub(super) fn still_at_origin() -> HeadMotion {
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }

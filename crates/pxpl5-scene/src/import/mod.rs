@@ -42,8 +42,8 @@ impl Placement {
     /// Returns the motion of a head that looks at a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
-            Self::Fitted => mesh::seeing_fitted(),
-            Self::AsInFile => mesh::standing_at_the_origin(),
+            Self::Fitted => mesh::motion_for_fitted(),
+            Self::AsInFile => mesh::still_at_origin(),
         }
     }
 }
@@ -170,6 +170,7 @@ enum Content {
 
 fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Content, LoadError> {
     let source = Source { name, bytes };
+    // Refuse unsuitable bytes before any parser sees them.
     source.check_is_bytes_of_text()?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });

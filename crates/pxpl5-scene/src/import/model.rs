@@ -101,7 +101,7 @@ impl Vertices {
             return known;
         }
         let next = corners.len() as u32;
-        push_slowly(corners, corner);
+        push_with_slow_growth(corners, corner);
         let hasher = &self.hasher;
         self.table.insert_unique(hash, next, |&vertex| hasher.hash_one(corners[vertex as usize]));
         next
@@ -109,7 +109,7 @@ impl Vertices {
 }
 
 /// Adds an item to a list that grows by an eighth instead of doubling, because a file can consist mostly of such items.
-pub(super) fn push_slowly<T>(list: &mut Vec<T>, item: T) {
+pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 1024);
     }
@@ -218,7 +218,7 @@ impl Model {
         let warnings = std::mem::take(&mut self.warnings);
         // Unused vertices would change the fit.
         if self.corners.is_empty() {
-            self.drop_unused();
+            self.remove_unused_points();
         }
         // Check memory and content before the scene is made.
         self.check_memory(name, file_bytes)?;
@@ -267,7 +267,7 @@ impl Model {
             return vertices;
         }
         // Compute missing normals in parts, to limit the memory for the sums.
-        let step = self.summed_at_once();
+        let step = self.shadings_per_pass();
         for first in (0..self.shaded()).step_by(step) {
             self.complete_normals(&mut vertices, fit, first, step);
         }
@@ -287,7 +287,7 @@ impl Model {
 
     /// Returns the number of shadings whose areas are summed at a time. Sums are in double precision, and all at once
     /// would take as much memory as the positions.
-    fn summed_at_once(&self) -> usize {
+    fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
 
@@ -316,7 +316,7 @@ impl Model {
 
     /// Removes the vertices that triangles do not use. Unused vertices would affect the fit and cost time in every
     /// frame.
-    fn drop_unused(&mut self) {
+    fn remove_unused_points(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {
             used[corner as usize] = true;
@@ -342,7 +342,7 @@ impl Model {
 
     /// Returns an error if the model takes too much memory while its scene is made. The file itself is not counted.
     fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), LoadError> {
-        let sums = self.summed_at_once().min(self.shaded()) * size_of::<DVec3>();
+        let sums = self.shadings_per_pass().min(self.shaded()) * size_of::<DVec3>();
         check_memory(name, self.lists_bytes() + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
     }
 }
@@ -365,8 +365,8 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadE
     if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
 }
 
-/// Most bytes of a table of vertices for each vertex. A slot takes five bytes, and between 7/16 and 7/8 of the slots
-/// are used. The table needs half as much again while it grows.
+/// Greatest number of bytes per vertex in a table of vertices. A slot takes five bytes, and between 7/16 and 7/8 of the
+/// slots are used. The table needs half as much again while it grows.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose `keep` is true, and frees the rest of the memory. An empty list stays empty.

@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Source;
-use super::model::{Model, Places, Vertices, counted, direction, push_slowly};
+use super::model::{Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
@@ -29,7 +29,7 @@ struct Reader<'a> {
     /// Numbers of points and normals up to the current line, from which negative indices count back.
     points: usize,
     normals: usize,
-    /// Number of normals in the file that are NaN, and the position of the first.
+    /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
     /// Smoothing group of the current faces as the second number of a [`Corner`](super::model::Corner), or `None` for
     /// flat faces.
@@ -109,6 +109,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let counts = Counts::of(source);
+        // Reserve the lists at their final lengths.
         let mut model = Model::new(Places::Double(Vec::new()));
         model.places.reserve_exact(counts.points);
         model.normals.reserve_exact(counts.normals);
@@ -200,7 +201,7 @@ impl<'a> Reader<'a> {
         // Add the normal of a flat face, and replace the fan if the polygon is concave.
         if needs_normal {
             let normal = self.model.polygon_normal(first);
-            push_slowly(&mut self.model.normals, normal);
+            push_with_slow_growth(&mut self.model.normals, normal);
         }
         self.model.cut_polygon(first);
         self.model.check_reading(self.source, 0)

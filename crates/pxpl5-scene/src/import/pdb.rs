@@ -89,6 +89,7 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut alternates = Alternates::default();
     for (number, line) in source.lines() {
         let at = FilePlace::Line(number);
+        // The first six columns name the record.
         match columns(line, 1, 6) {
             b"ATOM" | b"HETATM" if alternates.is_first(line) => atoms.push(atom(source, at, line)?),
             b"ENDMDL" => break,

@@ -11,7 +11,7 @@ use ply_rs_bw::ply::{
 };
 
 use super::Source;
-use super::model::{Detail, Model, Places, Vertices, counted, direction, push_slowly};
+use super::model::{Detail, Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{MARK, excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
@@ -66,7 +66,7 @@ struct Rows<'a> {
     text: &'a str,
     /// Greatest number of items in a list. Faces and strips never need longer lists for this number of vertices.
     longest_list: usize,
-    /// Number of normals in the file that are NaN, and the position of the first.
+    /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
     /// True if the colours of faces are ignored because vertices have colours too.
     has_both_colours: bool,
@@ -292,7 +292,7 @@ impl<'a> Rows<'a> {
             let mut before = self.vertex(at, &row, 1, colour, mesh)?;
             for n in 2..row.len() {
                 let corner = self.vertex(at, &row, n, colour, mesh)?;
-                push_slowly(&mut mesh.triangles, [first, before, corner]);
+                push_with_slow_growth(&mut mesh.triangles, [first, before, corner]);
                 before = corner;
             }
             mesh.cut_polygon(fan);
@@ -311,6 +311,7 @@ impl<'a> Rows<'a> {
     ) -> Result<u32, LoadError> {
         let point = self.corner(at, row, n, mesh)?;
         let Some([red, green, blue]) = colour else { return Ok(point) };
+        // A point with several colours becomes several vertices.
         mesh.detail = Detail::Colour;
         Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
     }
@@ -349,7 +350,7 @@ impl<'a> Rows<'a> {
                 strip.push(self.corner(at, &row, n, mesh)?);
                 // Swapping the first two corners of every second triangle keeps the orientation.
                 if let [_, _, last] = strip[..] {
-                    push_slowly(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
+                    push_with_slow_growth(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
                     strip.remove(0);
                     turned = 1 - turned;
                 }

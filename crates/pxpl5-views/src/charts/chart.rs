@@ -39,7 +39,7 @@ pub struct ChartPoint {
 
 /// Style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SeriesLook {
+pub enum SeriesStyle {
     /// A line through the points, in their order.
     Line,
     /// A line with a mark at each point. The intervals form a band.
@@ -56,7 +56,7 @@ pub struct ChartSeries {
     /// Points, in the order in which a line joins them.
     pub points: Vec<ChartPoint>,
     /// Style of the points.
-    pub look: SeriesLook,
+    pub look: SeriesStyle,
 }
 
 /// Size of a chart.
@@ -241,19 +241,19 @@ fn draw_series<'a>(
         let bounded: Vec<_> = run.iter().filter_map(|point| Some((point.at.0, point.interval?))).collect();
         // Intervals lie below the line and the marks.
         match series.look {
-            SeriesLook::Band if bounded.len() > 1 => {
+            SeriesStyle::Band if bounded.len() > 1 => {
                 let lower = bounded.iter().map(|(x, (low, _))| (*x, *low));
                 let upper = bounded.iter().rev().map(|(x, (_, high))| (*x, *high));
                 plane.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), look.colour.mix(0.2))])?;
             }
-            SeriesLook::Points | SeriesLook::Band => {
+            SeriesStyle::Points | SeriesStyle::Band => {
                 let upright = |(x, (low, high)): &(f64, (f64, f64))| vec![(*x, *low), (*x, *high)];
                 plane.draw_series(bounded.iter().map(|point| PathElement::new(upright(point), look.stroke())))?;
             }
-            SeriesLook::Line => {}
+            SeriesStyle::Line => {}
         }
         let places = || run.iter().map(|point| point.at);
-        if series.look != SeriesLook::Points {
+        if series.look != SeriesStyle::Points {
             match look.dashes() {
                 None => plane.draw_series(LineSeries::new(places(), look.stroke()))?,
                 Some((on, off)) => {
@@ -262,7 +262,7 @@ fn draw_series<'a>(
                 }
             };
         }
-        if series.look != SeriesLook::Line {
+        if series.look != SeriesStyle::Line {
             places().try_for_each(|at| look.mark(plane.plotting_area(), at))?;
         }
     }
@@ -273,7 +273,7 @@ fn draw_series<'a>(
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;
-    if series.look == SeriesLook::Points {
+    if series.look == SeriesStyle::Points {
         look.mark(area, (x + em, y))?;
     } else {
         let ends = vec![(x, y), (x + 2 * em, y)];
@@ -283,7 +283,7 @@ fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32
                 area.draw(&plotters::element::DashedPathElement::new(ends, on, off, look.stroke()))?;
             }
         }
-        if series.look == SeriesLook::Band {
+        if series.look == SeriesStyle::Band {
             look.mark(area, (x + em, y))?;
         }
     }

@@ -1,6 +1,6 @@
 //! Chart of simulation speed against error.
 
-use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
+use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use super::scale::AxisScale;
 
 /// Speed and error of a way to simulate.
@@ -29,7 +29,7 @@ pub fn level_chart(levels: &[SpeedAndError]) -> String {
 
 fn series_of(level: &SpeedAndError) -> ChartSeries {
     let name = format!("{}, {:.1} %", level.name, level.mean_error_percent);
-    ChartSeries { name, points: vec![point_of(level)], look: SeriesLook::Points }
+    ChartSeries { name, points: vec![point_of(level)], look: SeriesStyle::Points }
 }
 
 /// Returns the position of an entry. Speeds below one field a second are drawn at one.
@@ -53,7 +53,7 @@ fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
         }
     }
     let points = best.iter().map(|level| point_of(level)).collect();
-    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, look: SeriesLook::Line })
+    (best.len() > 1).then(|| ChartSeries { name: "front of the best".to_owned(), points, look: SeriesStyle::Line })
 }
 
 #[cfg(test)]

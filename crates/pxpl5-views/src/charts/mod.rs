@@ -18,7 +18,7 @@ mod parts;
 mod plane;
 mod scale;
 
-pub use chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
+pub use chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};

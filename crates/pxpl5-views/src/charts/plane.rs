@@ -1,6 +1,6 @@
 //! Charts of comparisons for a screen: curves, and points with intervals.
 
-use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
+use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use super::scale::AxisScale;
 
 /// A named curve. The points are joined in their order. A point with NaN interrupts the line.
@@ -49,12 +49,12 @@ fn on_screen(axes: &ChartAxes, up: AxisScale, series: Vec<ChartSeries>) -> Strin
 fn of_curve(curve: &Curve) -> ChartSeries {
     let point = |at: &(f64, f64)| ChartPoint { at: *at, interval: (f64::NAN, f64::NAN) };
     let points = curve.points.iter().map(point).collect();
-    ChartSeries { name: curve.name.clone(), points, look: SeriesLook::Line }
+    ChartSeries { name: curve.name.clone(), points, look: SeriesStyle::Line }
 }
 
 fn of_point(point: &MarkedPoint) -> ChartSeries {
     let points = vec![ChartPoint { at: point.at, interval: point.interval }];
-    ChartSeries { name: point.name.clone(), points, look: SeriesLook::Points }
+    ChartSeries { name: point.name.clone(), points, look: SeriesStyle::Points }
 }
 
 #[cfg(test)]

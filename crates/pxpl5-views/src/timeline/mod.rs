@@ -25,7 +25,7 @@ mod options;
 mod rows;
 mod style;
 
-pub use crate::ports::PortShown;
+pub use crate::ports::ShownPicture;
 pub use model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
 pub use options::{MAX_FIELDS, TimelineOptions};
 

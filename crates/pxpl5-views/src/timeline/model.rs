@@ -1,6 +1,6 @@
 //! Content of a timeline, before it is drawn.
 
-use crate::ports::PortShown;
+use crate::ports::ShownPicture;
 use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
 use pxpl5_sim::Time;
@@ -41,7 +41,7 @@ pub struct TimelineRow {
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
     /// Pictures that the port of this row showed. Empty for rows other than ports with their own swaps.
-    pub shown: Vec<PortShown>,
+    pub shown: Vec<ShownPicture>,
 }
 
 /// A scan of the first display's first surface, which lights in one period.

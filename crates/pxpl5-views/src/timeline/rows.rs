@@ -2,7 +2,7 @@
 
 use super::model::{Bar, TimelineRow};
 use super::options::TimelineOptions;
-use crate::ports::{DisplayPort, display_ports, is_behind_ports, shown};
+use crate::ports::{DisplayPort, display_ports, has_separate_ports, shown};
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
 use pxpl5_run::SoFar;
@@ -19,7 +19,7 @@ pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOpti
     rows.push(stage_row("graphics processors", run, stages, &[Stage::Edit, Stage::Transform]));
     rows.push(stage_row("renderers", run, stages, &[Stage::Render]));
     let ports = display_ports(run.record());
-    let surfaces = run.record().surfaces().filter(|(id, _)| !is_behind_ports(run.record(), *id));
+    let surfaces = run.record().surfaces().filter(|(id, _)| !has_separate_ports(run.record(), *id));
     rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(run, |arrival| arrival.surface == id))));
     rows.extend(ports.iter().map(|port| port_row(run, port)));
     rows

@@ -36,6 +36,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let small = PerspectaConfig { width: SMALL, height: SMALL, ..PerspectaConfig::PAPERS };
     let recording = small_triangle()?;
     let count = |(clip, passes, statement)| {
+        // Without bins every slice issues the triangle once per pass.
         let display = small.swept(clip, Projection::Orthographic)?;
         let stats = render_volume(&display, &recording, &VolumeConfig::plain(), &HostRenderer, workers)?.stats;
         Ok(row("P5", statement, "draws", passes, 0.0, stats.draws as f64 / stats.slices_rendered as f64))

@@ -120,6 +120,7 @@ fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     Ok(RgbImage::from_fn(SIDE, SIDE, |x, y| {
         let point = place(x, y);
         let is_outside = point[0].hypot(point[2]) > 64.0;
+        // Colour a point by the slices that accept it.
         match [0, 1, 2].map(|k: usize| views[k].accepts(point.into())) {
             _ if is_outside => Rgb([32, 32, 40]),
             [false, true, false] => LIT,

@@ -72,6 +72,7 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
         [100.0 * cos, 0.0, 100.0 * sin]
     };
     let accepts = |i: u32| view.accepts(place(i % steps).into());
+    // A plane is crossed twice in a turn.
     let crossings = (0..steps).filter(|i| accepts(*i) != accepts(i + 1)).count();
     let on_axis = display.views().iter().filter(|view| has_axis(view)).count();
     vec![
@@ -109,6 +110,7 @@ fn signs() -> Vec<Figure> {
         let bits = layout.planes.iter().enumerate().map(|(i, plane)| u32::from(rule(plane, p)) << i);
         bits.sum::<u32>()
     };
+    // Count the grid points for which model and printed rule agree.
     let coded = grid().filter(|p| layout.code(*p) == expected(*p)).count();
     let left = grid().filter(|p| agrees(*p, 1.0)).count();
     let right = grid().filter(|p| agrees(*p, -1.0)).count();

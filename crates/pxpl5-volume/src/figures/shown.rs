@@ -89,6 +89,7 @@ fn dilation() -> Shown {
     let wedge = HalfWedge::new(396, 384.0);
     let more =
         |clip: SliceClip, u: f64| clip.half_thickness(wedge, u) - SliceClip::ShaderPlanes.half_thickness(wedge, u);
+    // Compare the thickness at the axis and at the rim.
     let parallel = [0.0, 384.0].map(|u| more(SliceClip::Parallel(0.5), u));
     let hyperbola = [0.0, 384.0].map(|u| more(SliceClip::Hyperbolic(0.25), u));
     Shown {

@@ -33,7 +33,7 @@ use pxpl5_renderer::{ArrayPool, CommandKind, Layout, Renderer, RendererEvent, Re
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, MAX_MESSAGE_WORDS, Message,
+    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, MAX_MESSAGE_WORDS, Message,
     NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, RegionId, Word, swap_request,
 };
 use serde::Serialize;
@@ -220,11 +220,11 @@ impl<'a> Machine<'a> {
     fn made(&mut self, number: usize, now: Time) {
         let processor = &mut self.processors[number];
         processor.waiting = processor.working_on.take();
-        self.send_waiting(number, now);
+        self.send_finished_slice(number, now);
     }
 
     /// Hands the finished slice to the port if the previous one has left.
-    fn send_waiting(&mut self, number: usize, now: Time) {
+    fn send_finished_slice(&mut self, number: usize, now: Time) {
         if self.processors[number].is_sending {
             return;
         }
@@ -290,7 +290,7 @@ impl<'a> Machine<'a> {
             region: RegionId(region as u16),
             picture: PictureNumber(slice as u64),
         };
-        CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
+        CopyOrder { target, context: 0, way: CopyPath::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
@@ -323,7 +323,7 @@ impl<'a> Machine<'a> {
                 None => {
                     let number = usize::from(source.0);
                     self.processors[number].is_sending = false;
-                    self.send_waiting(number, now);
+                    self.send_finished_slice(number, now);
                     self.begin_next(number, now);
                 }
             },
@@ -341,6 +341,7 @@ impl<'a> Machine<'a> {
         for (time, phase, event) in self.renderer_context.drain_events() {
             self.queue.schedule(time, phase, Event::Renderer(board, event));
         }
+        // Collect the outputs first, because sending tiles needs the whole machine.
         let outputs: Vec<_> = self.renderer_context.drain_outputs().collect();
         for (time, output) in outputs {
             match output {
@@ -360,6 +361,7 @@ impl<'a> Machine<'a> {
         let slice = pixels.target.picture.0 as usize;
         let region = usize::from(pixels.target.region.0);
         let tiles: Vec<Arc<[Word]>> = self.traffic.slices[slice].tiles[region].clone();
+        // The last tile has the ticket, so the renderer learns when its region has left.
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
             let body = Body::Words(words);

@@ -37,6 +37,7 @@ impl FlatDisplay {
         let (sin_e, cos_e) = libm::sincos(elevation);
         let eye = distance * DVec3::new(cos_e * sin_a, sin_e, cos_e * cos_a);
         let view = DMat4::look_at_rh(eye, DVec3::ZERO, DVec3::Y);
+        // Near and far plane enclose everything that the eye can look at.
         let near = distance * 0.01;
         let far = distance * 100.0;
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];

@@ -82,6 +82,7 @@ impl SweptConfig {
         require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
         require((1..=4096).contains(&self.height), "display.height", "1 to 4096", self.height)?;
         require(self.phase.is_finite(), "display.phase", "a finite angle", self.phase)?;
+        // Clip and projection depend on the display's radius.
         let bits = self.plane_fraction_bits.unwrap_or(0);
         require(bits <= 52, "clip.plane_fraction_bits", "0 to 52", bits)?;
         let wedge = self.half_wedge();

@@ -36,11 +36,11 @@ impl<'a> Cluster<'a> {
     /// Returns the primitives that can reach any s in a range. `row` is the row of the view matrix that computes s.
     /// Omitted primitives cannot reach the range.
     #[inline(always)]
-    pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> Reaching<'a> {
+    pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> ReachablePrimitives<'a> {
         // First test the sphere around the whole cluster, then the spheres of its primitives.
         let distance = along(row, self.ball.centre);
         if (distance - self.ball.radius > high) | (distance + self.ball.radius < low) {
-            return Reaching { rest: 0, primitives: self.primitives };
+            return ReachablePrimitives { rest: 0, primitives: self.primitives };
         }
         let [x, y, z] = &self.each.centre;
         let mut lanes = [0u64; CLUSTER];
@@ -50,17 +50,20 @@ impl<'a> Cluster<'a> {
             lanes[i] = if is_off { 0 } else { 1 << i };
         }
         let there = (1 << self.primitives.len()) - 1;
-        Reaching { rest: lanes.iter().fold(0, |mask, lane| mask | lane) & there, primitives: self.primitives }
+        ReachablePrimitives {
+            rest: lanes.iter().fold(0, |mask, lane| mask | lane) & there,
+            primitives: self.primitives,
+        }
     }
 }
 
 /// An iterator over the selected primitives of a cluster, in their order.
-pub(crate) struct Reaching<'a> {
+pub(crate) struct ReachablePrimitives<'a> {
     rest: u64,
     primitives: &'a [u32],
 }
 
-impl Iterator for Reaching<'_> {
+impl Iterator for ReachablePrimitives<'_> {
     type Item = u32;
 
     #[inline(always)]

@@ -44,6 +44,7 @@ fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     let steps = span(0).max(span(1)).ceil().max(1.0);
     let mut added = 0;
     for i in 0..=steps as u32 {
+        // Positions and colours are interpolated linearly along the line.
         let t = mix(begin, end, f64::from(i) / steps);
         let x = mix(from.at[0], to.at[0], t).floor();
         let y = mix(from.at[1], to.at[1], t).floor();
@@ -58,6 +59,7 @@ fn inside(from: [f64; 2], to: [f64; 2], size: [u32; 2]) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     for axis in 0..2 {
         let step = to[axis] - from[axis];
+        // Distances to both borders of the image along this axis.
         let limits = [-from[axis], f64::from(size[axis]) - from[axis]];
         if step == 0.0 {
             if limits[0] > 0.0 || limits[1] < 0.0 {

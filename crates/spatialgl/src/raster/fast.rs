@@ -11,7 +11,7 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread with the same voxels and the same counts as [`OracleRenderer`](super::OracleRenderer).
+/// A fast renderer on one thread with the same voxels and the same counts as [`ReferenceRenderer`](super::ReferenceRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
 /// same results.
@@ -91,6 +91,7 @@ fn triangle(
 ) -> Option<Setup> {
     let local = [transform.local(*a), transform.local(*b), transform.local(*c)];
     let places = [transform.place(local[0]), transform.place(local[1]), transform.place(local[2])];
+    // Most triangles are invisible and end here.
     let bounds = bounds([&places[0], &places[1], &places[2]], size)?;
     let corner = |i: usize, world: &[f64; 3]| {
         let [p, q] = transform.volume.attributes(*world, local[i][0], local[i][2]);

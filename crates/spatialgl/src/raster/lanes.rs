@@ -15,7 +15,7 @@ const LANES: usize = 8;
 /// A value for each pixel of a vector.
 type EachLane = [f64; LANES];
 
-/// Greatest number of pixels in the bounds of a triangle for which all rows are treated as one sequence.
+/// Greatest number of pixels in a triangle's bounds at which all rows are drawn as one sequence of pixels.
 const SMALL: u32 = 64;
 
 /// Least width in pixels for which the range of each row is computed before its pixels.
@@ -281,6 +281,7 @@ impl Setup {
     fn row_range(&self, row: [f64; 3], checks: Checks) -> [u32; 2] {
         let mut range = self.bounds.x.map(f64::from);
         for (Edge { a, b, x, c, .. }, row) in self.edges.iter().zip(row) {
+            // A nearly horizontal edge would move the limit by a large rounding error.
             let is_well_posed = *c == 0.0 && a.abs() > 1e-6 * b.abs();
             if is_well_posed {
                 narrow(&mut range, *a, x - row / a);
@@ -309,6 +310,7 @@ impl Setup {
             constant += values[k] * (row[k] - a * x);
             size += values[k].abs() * (a.abs() + b.abs());
         }
+        // A small slope relative to its terms is mostly rounding error.
         if slope.abs() > 1e-6 * size {
             narrow(range, slope, -constant / slope);
         }

@@ -12,7 +12,7 @@ mod supersampled;
 
 pub use cluster::Bin;
 pub use fast::HostRenderer;
-pub use oracle::OracleRenderer;
+pub use oracle::ReferenceRenderer;
 pub use supersampled::Supersampled;
 
 use crate::command::CommandBuffer;

@@ -12,9 +12,9 @@ use crate::view::SliceView;
 
 /// The reference model, without optimizations: the definition of the voxels that every other renderer must draw.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct OracleRenderer;
+pub struct ReferenceRenderer;
 
-impl SliceRenderer for OracleRenderer {
+impl SliceRenderer for ReferenceRenderer {
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats {
         let transform = SliceTransform::new(view);
         let mut stats = SliceStats::default();

@@ -79,7 +79,7 @@ impl<R: SliceRenderer> SliceRenderer for Supersampled<R> {
         let mut large = self.large(image);
         large.clear(work.commands.background());
         let sampled = SliceWork { coverage: Coverage::Sampled, ..work };
-        let mut stats = self.inner.render(sampled, &view.magnified(self.factor), &mut large);
+        let mut stats = self.inner.render(sampled, &view.supersampled_view(self.factor), &mut large);
         self.resolve(&large, image);
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner).push(large);
         if work.coverage == Coverage::Connected {

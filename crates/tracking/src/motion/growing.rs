@@ -13,7 +13,7 @@ use thiserror::Error;
 /// the simulation: every instant that the simulation reads must lie between two samples. Otherwise later samples would
 /// change a pose that has already been used.
 #[derive(Clone, Debug)]
-pub struct Growing(Arc<RwLock<Recording>>);
+pub struct GrowingRecording(Arc<RwLock<Recording>>);
 
 /// The error for added samples that do not come after the last sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -25,7 +25,7 @@ pub struct GrowthError {
     pub found_ps: u64,
 }
 
-impl Growing {
+impl GrowingRecording {
     /// Creates a growing motion that begins with the samples of `begin`.
     #[must_use]
     pub fn new(begin: Recording) -> Self {
@@ -59,7 +59,7 @@ impl Growing {
     }
 }
 
-impl Motion for Growing {
+impl Motion for GrowingRecording {
     fn pose(&self, t_ps: u64) -> Pose {
         self.known().pose(t_ps)
     }

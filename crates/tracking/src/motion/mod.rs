@@ -12,11 +12,11 @@ mod still;
 mod synthetic;
 mod walk;
 
-pub use growing::{Growing, GrowthError};
+pub use growing::{GrowingRecording, GrowthError};
 pub use pan::Pan;
 pub use pendulum::Pendulum;
 pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
-pub use shifted::Shifted;
+pub use shifted::AdvancedMotion;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;
 pub use still::Still;
@@ -36,7 +36,7 @@ use crate::time::{PS_PER_S, span_s};
 /// 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Interval of the poses that the default [`Motion::identify`] writes; `SAMPLES` is the number of poses.
+/// Time between the poses that the default [`Motion::identify`] writes, and their number.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
@@ -81,7 +81,7 @@ pub trait Motion: Debug {
         self.ends_ps()
     }
 
-    /// Returns true if the motion is known only up to the present of a run ([`Growing`]). Later poses must not be read
+    /// Returns true if the motion is known only up to the present of a run ([`GrowingRecording`]). Later poses must not be read
     /// then.
     fn grows(&self) -> bool {
         false

@@ -6,14 +6,14 @@ use crate::pose::Pose;
 
 /// A motion that runs ahead of another motion by a constant time: the pose at t is the other's pose at t + `by_ps`.
 #[derive(Clone, Copy, Debug)]
-pub struct Shifted<M> {
+pub struct AdvancedMotion<M> {
     /// Original motion, which runs `by_ps` behind.
     pub motion: M,
     /// Time by which the original motion is advanced, ps.
     pub by_ps: u64,
 }
 
-impl<M: Motion> Motion for Shifted<M> {
+impl<M: Motion> Motion for AdvancedMotion<M> {
     fn pose(&self, t_ps: u64) -> Pose {
         self.motion.pose(t_ps.saturating_add(self.by_ps))
     }

@@ -64,6 +64,7 @@ impl Spline {
 
     /// Returns the values at `t_ps` and their rates per second.
     pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
+        // Six B-splines overlap every knot interval.
         let knot = t_ps / self.spacing_ps;
         let u = (t_ps % self.spacing_ps) as f64 / self.spacing_ps as f64;
         let (weights, slopes) = basis(u);

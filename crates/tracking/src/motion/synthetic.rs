@@ -81,6 +81,7 @@ impl Synthetic {
         Ok(Self {
             config: *config,
             seed,
+            // Every band has its own random stream.
             turn: spline(&config.turn, radians, stream(seed, 1))?,
             glance: spline(&config.glance, radians, stream(seed, 2))?,
             walk: spline(&config.walk, 1.0, stream(seed, 3))?,

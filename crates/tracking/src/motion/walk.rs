@@ -17,7 +17,7 @@ const AHEAD_M: f64 = 1.5;
 const LEAST_LEG_M: f64 = 1e-3;
 
 /// A head that walks at constant speed along a closed path, from the first corner at time 0. The head looks at a point
-/// of the path ahead, or also looks around if [`Self::looking_around`] was called.
+/// of the path ahead, or also looks around if [`Self::with_glances`] was called.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,
@@ -41,6 +41,7 @@ impl Walk {
             SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
         }
         SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
+        // Sum up the legs, including the leg from the last corner back to the first.
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
@@ -52,7 +53,7 @@ impl Walk {
 
     /// Returns the same walk with a head that also looks around, as [`Synthetic::recorded_use`] of this seed does.
     #[must_use]
-    pub fn looking_around(mut self, seed: u64) -> Self {
+    pub fn with_glances(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));
         self
     }
@@ -146,7 +147,7 @@ mod tests {
 
     #[test]
     fn looking_around_changes_the_gaze_and_not_the_way() {
-        let around = square().looking_around(3);
+        let around = square().with_glances(3);
         let poses = [around.pose(PS_PER_S), square().pose(PS_PER_S)];
         assert_eq!(poses[0].position, poses[1].position);
         assert!(poses[0].angle_deg(&poses[1]) > 0.1);

@@ -13,14 +13,14 @@ pub(super) trait Channel<T>: Send {
 }
 
 /// Values whose differences are vectors: positions (m) and orientations (rotation vectors, rad).
-pub(super) trait Movable: Copy + Send {
+pub(super) trait VectorDifference: Copy + Send {
     /// Returns the vector from `origin` to `self`.
     fn since(self, origin: Self) -> DVec3;
     /// Returns `self` moved by a vector.
     fn moved(self, by: DVec3) -> Self;
 }
 
-impl Movable for DVec3 {
+impl VectorDifference for DVec3 {
     fn since(self, origin: Self) -> DVec3 {
         self - origin
     }
@@ -29,7 +29,7 @@ impl Movable for DVec3 {
     }
 }
 
-impl Movable for DQuat {
+impl VectorDifference for DQuat {
     fn since(self, origin: Self) -> DVec3 {
         rotation::difference(origin, self)
     }

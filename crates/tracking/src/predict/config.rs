@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::Predictor;
 use super::extrapolation::{Extrapolation, Order};
 use super::orientation_kalman::OrientationKalman;
-use super::position_kalman::{Belief, PositionKalman};
-use super::predicting::GatedFilters;
+use super::position_kalman::{NoiseModel, PositionKalman};
+use super::predicting::GatedFilterPair;
 use crate::config as table;
 use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
@@ -67,7 +67,7 @@ pub struct PredictorConfig {
     #[serde(default)]
     pub start: Start,
     /// Limits by which the predictor accepts or rejects reports.
-    #[serde(default = "usual_gate")]
+    #[serde(default = "default_gate")]
     pub gate: table::Gate,
 }
 
@@ -102,7 +102,7 @@ impl Default for Start {
     }
 }
 
-const fn usual_gate() -> table::Gate {
+const fn default_gate() -> table::Gate {
     table::Gate::PAPERS
 }
 
@@ -119,6 +119,7 @@ impl PredictorConfig {
             kind,
             position_baseline: filter.baseline as u32,
             orientation_baseline: filter.baseline as u32,
+            // A tracker without noise would make the covariance singular.
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
             position_jerk: filter.position_jerk,
@@ -167,7 +168,7 @@ impl PredictorConfig {
     }
 
     fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
-        Box::new(GatedFilters::new(
+        Box::new(GatedFilterPair::new(
             Extrapolation::new(order, self.position_baseline as usize, DVec3::ZERO),
             Extrapolation::new(order, self.orientation_baseline as usize, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
@@ -177,17 +178,17 @@ impl PredictorConfig {
 
     fn kalman(&self) -> Box<dyn Predictor> {
         // Settings have standard deviations, filters need variances.
-        let position = Belief {
+        let position = NoiseModel {
             measurement: square(self.position_noise_m),
             jerk: square(self.position_jerk),
             start: (square(self.start.speed), square(self.start.acceleration)),
         };
-        let orientation = Belief {
+        let orientation = NoiseModel {
             measurement: square(self.orientation_noise_deg.to_radians()),
             jerk: square(self.orientation_jerk),
             start: (square(self.start.turn), square(self.start.turn_acceleration)),
         };
-        Box::new(GatedFilters::new(
+        Box::new(GatedFilterPair::new(
             PositionKalman::new(position),
             OrientationKalman::new(orientation),
             crate::time::seconds(self.horizon_ps),

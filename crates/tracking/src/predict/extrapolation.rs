@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use super::channel::{Channel, Movable};
+use super::channel::{Channel, VectorDifference};
 use crate::time::span_s;
 
 /// The highest derivative that an extrapolation uses.
@@ -26,7 +26,7 @@ pub(super) struct Extrapolation<T> {
     past: VecDeque<(u64, T)>,
 }
 
-impl<T: Movable> Extrapolation<T> {
+impl<T: VectorDifference> Extrapolation<T> {
     pub(super) fn new(order: Order, baseline: usize, start: T) -> Self {
         Self { order, baseline, past: VecDeque::from([(0, start)]) }
     }
@@ -54,7 +54,7 @@ impl<T: Movable> Extrapolation<T> {
     }
 }
 
-impl<T: Movable> Channel<T> for Extrapolation<T> {
+impl<T: VectorDifference> Channel<T> for Extrapolation<T> {
     fn restart(&mut self, t_ps: u64, value: T) {
         self.past.clear();
         self.past.push_front((t_ps, value));
@@ -85,7 +85,7 @@ mod tests {
     /// Uneven times of reports, ms.
     const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
 
-    fn fed<T: Movable>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {
+    fn fed<T: VectorDifference>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {
         let mut filter = Extrapolation::new(order, baseline, value(0.0));
         filter.restart(0, value(0.0));
         TIMES[1..].iter().for_each(|&t| filter.update(t * PS_PER_MS, value(t as f64 / 1e3)));

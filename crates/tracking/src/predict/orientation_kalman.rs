@@ -1,7 +1,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::channel::Channel;
-use super::position_kalman::{Belief, symmetric, white_jerk};
+use super::position_kalman::{NoiseModel, symmetric, white_jerk};
 use crate::rotation;
 use crate::time::span_s;
 
@@ -27,7 +27,7 @@ struct Covariance {
 /// 9 x 9 and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
 #[derive(Clone, Debug)]
 pub(super) struct OrientationKalman {
-    belief: Belief,
+    belief: NoiseModel,
     t_ps: u64,
     orientation: DQuat,
     rate: DVec3,
@@ -36,7 +36,7 @@ pub(super) struct OrientationKalman {
 }
 
 impl OrientationKalman {
-    pub(super) fn new(belief: Belief) -> Self {
+    pub(super) fn new(belief: NoiseModel) -> Self {
         Self {
             belief,
             t_ps: 0,
@@ -72,7 +72,7 @@ impl OrientationKalman {
 }
 
 impl Covariance {
-    fn start(belief: &Belief) -> Self {
+    fn start(belief: &NoiseModel) -> Self {
         let (rate, acceleration) = belief.start;
         Self {
             angle: DMat3::IDENTITY * belief.measurement,

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 type Matrix9 = SMatrix<f64, 9, 9>;
 
-const BELIEF: Belief = Belief { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
+const BELIEF: NoiseModel = NoiseModel { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
 
 /// Returns the covariance as one dense matrix of another library.
 fn dense(c: &Covariance) -> Matrix9 {
@@ -125,7 +125,7 @@ proptest! {
         noise in -10.0..-2.0f64,
         jerk in 0.0..6.0f64,
     ) {
-        let belief = Belief { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (4.0, 400.0) };
+        let belief = NoiseModel { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (4.0, 400.0) };
         let mut filter = OrientationKalman::new(belief);
         let mut t_ps = 0;
         let mut q = DQuat::IDENTITY;
@@ -145,7 +145,7 @@ fn pan(t: f64) -> DQuat {
 
 #[test]
 fn a_pan_through_180_degrees_is_followed_for_turns() {
-    let mut filter = OrientationKalman::new(Belief { measurement: 1e-10, ..BELIEF });
+    let mut filter = OrientationKalman::new(NoiseModel { measurement: 1e-10, ..BELIEF });
     for i in 1..=1200u64 {
         // The signs of the quaternions alternate, which must not matter.
         let q = pan(i as f64 / 120.0);

@@ -5,7 +5,7 @@ use crate::time::span_s;
 
 /// Assumptions of a filter about noise.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Belief {
+pub(super) struct NoiseModel {
     /// Variance of the measurement noise of each axis.
     pub(super) measurement: f64,
     /// Spectral density of the white jerk of the motion.
@@ -30,7 +30,7 @@ pub(super) fn white_jerk(dt: f64) -> DMat3 {
 /// times, so they share one covariance.
 #[derive(Clone, Debug)]
 pub(super) struct PositionKalman {
-    belief: Belief,
+    belief: NoiseModel,
     t_ps: u64,
     position: DVec3,
     velocity: DVec3,
@@ -39,7 +39,7 @@ pub(super) struct PositionKalman {
 }
 
 impl PositionKalman {
-    pub(super) fn new(belief: Belief) -> Self {
+    pub(super) fn new(belief: NoiseModel) -> Self {
         let zero = DVec3::ZERO;
         let mut filter =
             Self { belief, t_ps: 0, position: zero, velocity: zero, acceleration: zero, covariance: DMat3::ZERO };
@@ -102,7 +102,7 @@ mod tests {
     use nalgebra::{Matrix3, RowVector3, Vector3};
     use proptest::prelude::*;
 
-    const BELIEF: Belief = Belief { measurement: 6.4e-7, jerk: 64.0, start: (1.0, 25.0) };
+    const BELIEF: NoiseModel = NoiseModel { measurement: 6.4e-7, jerk: 64.0, start: (1.0, 25.0) };
 
     fn oracle(m: &DMat3) -> Matrix3<f64> {
         Matrix3::from_column_slice(&m.to_cols_array())
@@ -115,7 +115,7 @@ mod tests {
             noise in -10.0..0.0f64,
             jerk in -4.0..6.0f64,
         ) {
-            let belief = Belief { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (1.0, 25.0) };
+            let belief = NoiseModel { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (1.0, 25.0) };
             let mut filter = PositionKalman::new(belief);
             let mut t_ps = 0;
             for step in steps {
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn without_noise_a_parabola_is_followed_to_its_end() {
-        let mut filter = PositionKalman::new(Belief { measurement: 1e-12, ..BELIEF });
+        let mut filter = PositionKalman::new(NoiseModel { measurement: 1e-12, ..BELIEF });
         for i in 0..240u64 {
             filter.update(i * PS_PER_S / 120 + 1, parabola(i as f64 / 120.0));
         }

@@ -10,7 +10,7 @@ use crate::tracker::TrackerReport;
 
 /// A gate in front of two filters, one for position and one for orientation, each with its own time stamps.
 #[derive(Clone, Debug)]
-pub(super) struct GatedFilters<P, O> {
+pub(super) struct GatedFilterPair<P, O> {
     gate: Gate,
     position: P,
     orientation: O,
@@ -19,7 +19,7 @@ pub(super) struct GatedFilters<P, O> {
     horizon_s: f64,
 }
 
-impl<P, O> GatedFilters<P, O> {
+impl<P, O> GatedFilterPair<P, O> {
     pub(super) fn new(position: P, orientation: O, horizon_s: f64, limits: table::Gate) -> Self {
         Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
@@ -32,7 +32,7 @@ impl<P, O> GatedFilters<P, O> {
     }
 }
 
-impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
+impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilterPair<P, O> {
     fn observe(&mut self, report: &TrackerReport) {
         let stamps = (report.position_measured_ps, report.measured_ps);
         // The gate accepts quaternions of nearly unit length.

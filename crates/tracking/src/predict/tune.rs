@@ -39,7 +39,7 @@ pub struct Training {
     pub interval_ps: u64,
     /// True if another motion of the same kind was used, false if the motion itself was used.
     pub sibling: bool,
-    /// Length of the motion, seconds. The first second at most is not evaluated.
+    /// Length of the training motion, seconds. At most the first second is not evaluated.
     pub seconds: f64,
     /// Number of reports whose predictions were evaluated.
     pub reports: u64,
@@ -73,7 +73,7 @@ pub fn training_seed(judged: u64) -> u64 {
 /// the motion.
 ///
 /// Training uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
-/// tracker has no bias, metal or faults, and its noise has another seed than `judged_seed`. The same (motion, tracker,
+/// tracker has no bias, metal or faults, and its noise has another seed than `evaluated_seed`. The same (motion, tracker,
 /// interval) gives the same result on every host.
 ///
 /// # Errors
@@ -84,17 +84,17 @@ pub fn tune<M: Motion + ?Sized>(
     tracker: &TrackerModel,
     interval_ps: u64,
     base: &PredictorConfig,
-    judged_seed: u64,
+    evaluated_seed: u64,
 ) -> Result<Tuned, SettingError> {
     // Check the settings before the long search.
     base.build()?;
-    let seed = training_seed(judged_seed);
+    let seed = training_seed(evaluated_seed);
     let tracker = TrackerModel::new(tracker.config().clone().without_systematic_errors())?;
     // Collect reports and true poses of another motion of the same kind, if there is one.
     let sibling = motion.sibling();
     let lesson = match &sibling {
-        Some(sibling) => Lesson::of(sibling.as_ref(), &tracker, interval_ps, seed),
-        None => Lesson::of(motion, &tracker, interval_ps, seed),
+        Some(sibling) => TrainingData::of(sibling.as_ref(), &tracker, interval_ps, seed),
+        None => TrainingData::of(motion, &tracker, interval_ps, seed),
     };
     let Some(lesson) = lesson.filter(|_| base.kind != PredictorKind::None) else {
         return Ok(Tuned { config: *base, training: None });
@@ -111,7 +111,7 @@ pub fn tune<M: Motion + ?Sized>(
 }
 
 /// The training data: reports, and the true pose to predict from each report.
-struct Lesson {
+struct TrainingData {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
     /// Number of reports at the start whose predictions are not evaluated.
@@ -123,9 +123,10 @@ struct Lesson {
     rates: [f64; 4],
 }
 
-impl Lesson {
+impl TrainingData {
     /// Collects the training data of a motion behind a tracker, or returns `None` if no report can be evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
+        // A head that stands still at its end teaches the filter nothing.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
@@ -156,6 +157,7 @@ impl Lesson {
         let mut predictor = config.build()?;
         let mut sums = [0.0; 2];
         for (i, (report, truth)) in self.reports.iter().zip(&self.truths).enumerate() {
+            // The filter sees every report, but its first predictions are not evaluated.
             predictor.observe(report);
             if i >= self.settled {
                 let predicted = predictor.predict(report.measured_ps + self.interval_ps);
@@ -228,6 +230,7 @@ fn rates<M: Motion + ?Sized>(motion: &M, reports: &[TrackerReport]) -> [f64; 4] 
         |report: &TrackerReport| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));
     let mut squares = [0.0; 4];
     for pair in reports.windows(2) {
+        // Accelerations are differences of the velocities at successive reports.
         let dt_s = span_s(pair[0].measured_ps, pair[1].measured_ps);
         let before = at(&pair[0]);
         let after = at(&pair[1]);

@@ -15,7 +15,7 @@ pub enum Detection {
 
 impl Detection {
     /// Returns the greatest delay of the detection, in halves of a report interval.
-    pub(super) fn half_intervals_late(self) -> u64 {
+    pub(super) fn greatest_delay_half_intervals(self) -> u64 {
         match self {
             Self::Crossing => 2,
             Self::VelocitySign => 3,
@@ -39,7 +39,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    pub(super) fn sees_low_point(&mut self, report: &TrackerReport) -> bool {
+    pub(super) fn detects_low_point(&mut self, report: &TrackerReport) -> bool {
         if !report.pose.is_finite() {
             return false;
         }

@@ -4,7 +4,7 @@ use crate::tracker::TrackerModel;
 
 /// The report by which the host detects a low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sighting {
+pub struct LowPointReport {
     /// Time stamp of the report, ps: the instant at which its position was true.
     pub measured_ps: u64,
     /// Instant at which the report reaches the host, ps. The host starts a frame at this instant.
@@ -15,7 +15,7 @@ pub struct Sighting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
     /// Report by which the host detected the low point.
-    pub sighting: Sighting,
+    pub sighting: LowPointReport,
     /// Start of the frame that the low point requested, ps.
     pub started_ps: u64,
     /// Instant at which the frame is shown according to the pipeline, ps.
@@ -53,6 +53,7 @@ impl Latency {
         let spans: Vec<f64> = passes.iter().map(span).map(|(from, to)| span_s(from, to)).collect();
         let n = spans.len();
         let mean_s = spans.iter().sum::<f64>() / n as f64;
+        // One pass has no deviation: the division gives NaN.
         let variance = spans.iter().map(|s| (s - mean_s) * (s - mean_s)).sum::<f64>() / (n as f64 - 1.0);
         Self {
             n,
@@ -132,7 +133,7 @@ impl Measurement {
         Self {
             outside: Side::outside(&outside_passes),
             inside: Side::inside(&inside_passes),
-            tracking_bound_ps: tracker.report_interval_ps() * detection.half_intervals_late() / 2,
+            tracking_bound_ps: tracker.report_interval_ps() * detection.greatest_delay_half_intervals() / 2,
             rendering_bound_ps: place_ps,
             rendering_early_ps: 0,
             outside_passes,
@@ -143,7 +144,7 @@ impl Measurement {
     /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam
     /// passes a photodiode above this line earlier, so outside rendering can be shorter than inside rendering.
     #[must_use]
-    pub fn counted_in_the_scan(mut self, counted_ps: u64) -> Self {
+    pub fn with_frames_counted_in_scan(mut self, counted_ps: u64) -> Self {
         self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
         self
     }
@@ -205,7 +206,7 @@ impl Oscilloscope {
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {
             let light = self.screen.edges().iter().find(|edge| edge.t_ps >= step.t_ps && edge.high == step.high)?;
-            Some(OutsidePass { low_point_ps: rig.low_point_of(step.t_ps), dac_ps: step.t_ps, light_ps: light.t_ps })
+            Some(OutsidePass { low_point_ps: rig.low_point_before(step.t_ps), dac_ps: step.t_ps, light_ps: light.t_ps })
         });
         passes.collect()
     }

@@ -13,7 +13,7 @@ mod measurement;
 mod oscilloscope;
 
 pub use detection::Detection;
-pub use measurement::{InsidePass, Latency, Measurement, Oscilloscope, OutsidePass, Side, Sighting};
+pub use measurement::{InsidePass, Latency, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
 pub use oscilloscope::{ScopeEdge, ScopeTrace};
 
 use thiserror::Error;
@@ -81,16 +81,16 @@ impl PendulumRig {
     /// # Errors
     ///
     /// [`RigError::TooFewPasses`] if the tracker stops reporting or the host detects fewer than `n` low points.
-    pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<Sighting>, RigError> {
+    pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<LowPointReport>, RigError> {
         let expected = n.max(1);
         // The dead time of the detector is a quarter of a swing.
         let mut detector = self.detection.start(self.half_swing_ps() / 2);
         let limit_ps = self.pendulum.low_point_ps(n as u64).saturating_add(PATIENCE_PS);
-        let seen: Vec<Sighting> = tracker
+        let seen: Vec<LowPointReport> = tracker
             .reports(&self.pendulum, seed)
             .take_while(|report| report.measured_ps < limit_ps)
-            .filter(|report| detector.sees_low_point(report))
-            .map(|report| Sighting { measured_ps: report.position_measured_ps, arrives_ps: report.arrives_ps })
+            .filter(|report| detector.detects_low_point(report))
+            .map(|report| LowPointReport { measured_ps: report.position_measured_ps, arrives_ps: report.arrives_ps })
             .take(expected)
             .collect();
         if seen.len() < expected { Err(RigError::TooFewPasses { expected, found: seen.len() }) } else { Ok(seen) }
@@ -118,7 +118,7 @@ impl PendulumRig {
 
     /// Returns the low point that caused a step of the D/A line: the last low point, or one that noise announced too
     /// early. The assignment is correct for tracking latencies below nine tenths of a half swing, 0.64 s.
-    fn low_point_of(&self, dac_ps: u64) -> u64 {
+    fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;
         self.pendulum.low_point_ps(guess)

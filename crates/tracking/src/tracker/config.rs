@@ -6,9 +6,9 @@ use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's port. The presets take every number from [`crate::config`].
 ///
-/// The tracker begins measurement n, called a solution, at the n-th sync (floor of n x receivers / rate). The solution
-/// is ready for the cable `sync_to_output_ps` later. A latency counts back from this instant to the instant at which
-/// the pose was true.
+/// The tracker begins measurement n, called a solution, at the n-th sync (floor of n x receivers / rate). This
+/// measurement is ready for the cable `sync_to_output_ps` later. A latency counts back from this instant to the instant
+/// at which the pose was true.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {

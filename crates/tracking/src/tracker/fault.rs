@@ -15,16 +15,16 @@ pub enum TrackerFault {
         /// First instant at which no report arrives, ps.
         from_ps: u64,
     },
-    /// The tracker measures no solutions in [from, to).
+    /// The tracker makes no measurements in [from, to).
     Dropout {
-        /// First instant without measured solutions, ps.
+        /// First instant without measurements, ps.
         from_ps: u64,
-        /// First instant at which solutions are measured again, ps.
+        /// First instant with measurements again, ps.
         to_ps: u64,
     },
-    /// Each solution is lost with this probability.
+    /// Each measurement is lost with this probability.
     RandomDropout {
-        /// Probability that a solution is lost, 0 to 0.99.
+        /// Probability that a measurement is lost, 0 to 0.99.
         probability: f64,
     },
     /// Each report consists of NaN with this probability.

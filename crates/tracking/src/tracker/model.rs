@@ -39,7 +39,7 @@ impl TrackerModel {
         &self.config
     }
 
-    /// Returns the time between solutions of the head's receiver, rounded down to a picosecond.
+    /// Returns the time between measurements of the head's receiver, rounded down to a picosecond.
     pub fn period_ps(&self) -> u64 {
         PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
     }
@@ -68,7 +68,7 @@ impl TrackerModel {
         tick_ps(n, self.config.receivers, self.config.rate_hz)
     }
 
-    /// Returns the first solution whose sync is at or after `t_ps`.
+    /// Returns the number of the first measurement whose sync is at or after `t_ps`.
     pub(super) fn solution_at(&self, t_ps: u64) -> u64 {
         let per_ps = u128::from(t_ps) * u128::from(self.config.rate_hz);
         let n = (per_ps / (u128::from(PS_PER_S) * u128::from(self.config.receivers))) as u64;

@@ -3,7 +3,8 @@ use crate::pose::Pose;
 /// A report as the host receives it: a pose with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerReport {
-    /// Number of the solution. A step of more than one from report to report means that solutions were dropped.
+    /// Number of the measurement (called a solution). A step of more than one from report to report means that
+    /// measurements were dropped.
     pub solution: u64,
     /// Instant at which the orientation was true, ps.
     pub measured_ps: u64,

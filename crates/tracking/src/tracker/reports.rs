@@ -59,12 +59,12 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Skips all solutions whose sync is before an instant. The tracker's own filter starts at this instant.
+    /// Skips all measurements whose sync is before an instant. The tracker's own filter starts at this instant.
     pub fn from(self, from_ps: u64) -> Self {
         Self { next_solution: self.model.solution_at(from_ps), ..self }
     }
 
-    /// Computes a solution of the tracker with its noise, distortion and filter, and the times at which its parts were
+    /// Computes a measurement of the tracker with noise, distortion and filter, and the times at which its parts were
     /// true.
     fn solve(&mut self, solution: u64, output_ps: u64) -> TrackerReport {
         let config = self.model.config();
@@ -115,22 +115,23 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if the solution is lost. A dropout interval is skipped in one step.
+    /// Returns true if a fault loses the measurement. A dropout interval is skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
+                // Skip the whole interval at once.
                 TrackerFault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
                     self.next_solution = self.model.solution_at(to_ps);
                     return true;
                 }
-                TrackerFault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
+                TrackerFault::RandomDropout { probability } if self.occurs(i, solution, probability) => return true,
                 _ => {}
             }
         }
         false
     }
 
-    fn strikes(&self, fault: usize, solution: u64, probability: f64) -> bool {
+    fn occurs(&self, fault: usize, solution: u64, probability: f64) -> bool {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
@@ -138,14 +139,14 @@ impl<M: Motion> Reports<M> {
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
-                TrackerFault::NotANumber { probability } if self.strikes(i, report.solution, probability) => {
+                TrackerFault::NotANumber { probability } if self.occurs(i, report.solution, probability) => {
                     report.pose = Pose { position: DVec3::NAN, orientation: DQuat::NAN };
                     return;
                 }
                 TrackerFault::Jump { probability, distance_m, angle_deg }
-                    if self.strikes(i, report.solution, probability) =>
+                    if self.occurs(i, report.solution, probability) =>
                 {
-                    // The direction of a jump depends only on the seed, the fault and the solution.
+                    // The direction of a jump depends only on the seed, the fault and the measurement.
                     let draws = stream(stream(self.faults, i as u64), report.solution);
                     report.pose.position += random_direction(draws, 0) * distance_m;
                     let turn = rotation::exp(random_direction(draws, 2) * angle_deg.to_radians());
@@ -157,8 +158,8 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Sends a ready solution if the cable is free. Returns the instant at which the host receives it, or `None` if the
-    /// cable is busy.
+    /// Sends a ready measurement if the cable is free. Returns the instant at which the host receives it, or `None` if
+    /// the cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;
@@ -203,9 +204,9 @@ impl<M: Motion> Iterator for Reports<M> {
             if self.is_lost(solution, sync_ps) {
                 continue;
             }
-            // Measure even if the cable is busy, because the tracker's filter advances with every solution.
+            // Measure even if the cable is busy, because the tracker's filter advances with every measurement.
             let mut report = self.solve(solution, output_ps);
-            // A busy cable drops the solution.
+            // A busy cable drops the measurement.
             let Some(arrives_ps) = self.send(output_ps) else { continue };
             report.arrives_ps = arrives_ps;
             self.corrupt(&mut report);

@@ -12,11 +12,11 @@ pub struct SerialLine {
     /// Line rate, 300 to 1,000,000 bits per second.
     pub baud: u32,
     /// Bits on the line for each byte, including start and stop bits, 1 to 100.
-    #[serde(default = "usual_byte_bits")]
+    #[serde(default = "default_byte_bits")]
     pub byte_bits: u32,
 }
 
-fn usual_byte_bits() -> u32 {
+fn default_byte_bits() -> u32 {
     table::HostPort::PAPERS.byte_bits as u32
 }
 

@@ -26,8 +26,8 @@ mod tests {
 
     type Interpolate = fn(&HmdView, DVec3, DVec3, f64) -> Option<DVec2>;
 
-    /// Returns the greatest error (px) of an interpolation over `span_ps` of a 200 deg/s pan. Only points whose true
-    /// position at that moment is within `half_width` px of the middle of a 600 px, 60 degree view count.
+    /// Returns the greatest error (px) of an interpolation over `span_ps` of a 200 deg/s pan. Points farther than
+    /// `half_width` px from the middle of a 600 px, 60 degree view are ignored.
     fn worst(interpolate: Interpolate, span_ps: u64, half_width: f64) -> f64 {
         let steps = (0..=40).flat_map(|step| (-340..=340).map(move |tenth_deg| (step, tenth_deg)));
         steps

@@ -53,6 +53,7 @@ impl RandomOrder {
         let mut high_bits = self.half_bits + self.odd_bit;
         let mut word = place;
         for round in 0..ROUNDS {
+            // A Feistel round: the low part passes through, and its hash changes the high part.
             let low = word & mask(low_bits);
             let high = word >> low_bits;
             let noise = bits(stream(self.seed, round), u64::from(low)) as u32;

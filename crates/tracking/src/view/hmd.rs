@@ -21,7 +21,7 @@ pub struct HmdView {
 
 /// The difference between the shown and the true position of a point in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelError {
+pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
     /// Length of the offset, px.
@@ -90,19 +90,19 @@ impl HmdView {
 
     /// Returns the error of a world point that was drawn for one pose and is seen from another. Returns `None` if the
     /// point is behind the eye in either pose.
-    pub fn pixel_error(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<PixelError> {
+    pub fn misregistration_at(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<Misregistration> {
         let drawn = drawn_for.view_of(world);
         let seen = seen_from.view_of(world);
         let offset_px = self.project(drawn)? - self.project(seen)?;
         let degrees = angle_between(drawn, seen).to_degrees();
-        Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
+        Some(Misregistration { offset_px, pixels: offset_px.length(), degrees })
     }
 
     /// Returns the error of a late frame by the papers' measure. The point is `distance_m` ahead on the axis of view
     /// when the frame begins. The error is the offset from the true position when the frame is shown.
-    pub fn centre_error(&self, begun: &Pose, shown: &Pose, distance_m: f64) -> Option<PixelError> {
+    pub fn centre_misregistration(&self, begun: &Pose, shown: &Pose, distance_m: f64) -> Option<Misregistration> {
         let point = begun.position + begun.orientation * (DVec3::NEG_Z * distance_m);
-        self.pixel_error(point, begun, shown)
+        self.misregistration_at(point, begun, shown)
     }
 }
 
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(HmdView::ntsc().project(DVec3::Z), None);
         assert_eq!(HmdView::ntsc().project(DVec3::X), None);
         let behind = Pose::facing(rotation::about_y(3.0));
-        assert_eq!(HmdView::ntsc().pixel_error(DVec3::NEG_Z, &Pose::IDENTITY, &behind), None);
+        assert_eq!(HmdView::ntsc().misregistration_at(DVec3::NEG_Z, &Pose::IDENTITY, &behind), None);
     }
 
     // J1 and J2 of the published figures: 200 deg/s, 60 degrees, 600 px.
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn a_pan_moves_the_centre_by_the_focal_length_times_the_tangent() {
         let pan = Pan::at(200.0);
-        let error = HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(NTSC_FIELD_PS), 5.0).unwrap();
+        let error = HmdView::ntsc().centre_misregistration(&pan.pose(0), &pan.pose(NTSC_FIELD_PS), 5.0).unwrap();
         let expected = 320.0 / 30f64.to_radians().tan() * drift_deg(200.0, NTSC_FIELD_PS).to_radians().tan();
         assert!((error.pixels - expected).abs() < 1e-9);
         assert!((error.degrees - drift_deg(200.0, NTSC_FIELD_PS)).abs() < 1e-9);
@@ -177,8 +177,9 @@ mod tests {
     fn latencies_of_90_and_50_ms_err_as_1_8_to_1() {
         // At 40 deg/s, the mean of recorded use; the tangent adds 0.1 %.
         let pan = Pan::at(40.0);
-        let [at_90, at_50] = [90, 50]
-            .map(|ms| HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels);
+        let [at_90, at_50] = [90, 50].map(|ms| {
+            HmdView::ntsc().centre_misregistration(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels
+        });
         assert!((at_90 / at_50 - 1.8).abs() < 0.004);
     }
 

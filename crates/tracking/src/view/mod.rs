@@ -6,5 +6,5 @@ mod hmd;
 mod raster_offset;
 
 pub use frameless::RandomOrder;
-pub use hmd::{HmdView, PixelError, drift_deg};
+pub use hmd::{HmdView, Misregistration, drift_deg};
 pub use raster_offset::RasterOffset;

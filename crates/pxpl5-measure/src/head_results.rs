@@ -3,25 +3,26 @@
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
-use crate::head_sum::HeadSaid;
+use crate::head_sum::HeadResults;
 use crate::step_sum::{StepSum, Steps};
-use crate::turn_sum::{TurnSum, Turns};
+use crate::turn_sum::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
-impl HeadSaid {
+impl HeadResults {
     /// Returns the results of the streaming observer, if the run had one.
-    fn while_it_ran(outcome: &Outcome) -> Option<&Self> {
+    fn from_observer(outcome: &Outcome) -> Option<&Self> {
         outcome.said()
     }
 }
 
 /// Returns a warning if a run with a head has discarded its records and had no streaming observer.
-pub(crate) fn untold(outcome: &Outcome) -> Option<String> {
-    let is_untold = outcome.head().is_some() && outcome.has_forgotten() && HeadSaid::while_it_ran(outcome).is_none();
-    is_untold.then(|| UNTOLD.to_owned())
+pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
+    let is_untold =
+        outcome.head().is_some() && outcome.has_discarded_records() && HeadResults::from_observer(outcome).is_none();
+    is_untold.then(|| MISSING_RESULTS.to_owned())
 }
 
-const UNTOLD: &str = "what is said from the head to light, of its turns and of errors in pixels is of the last pictures alone: the run gave up \
+const MISSING_RESULTS: &str = "what is said from the head to light, of its turns and of errors in pixels is of the last pictures alone: the run gave up \
     its records, and nobody summed them up before (Experiment::summed_by, or Keep::Everything)";
 
 impl PixelErrors {
@@ -33,13 +34,13 @@ impl PixelErrors {
 
     /// Returns the errors of a run whose pictures are shown as `showing` says.
     ///
-    /// A run that discarded its records ([`Outcome::has_forgotten`]) covers all periods only if
+    /// A run that discarded its records ([`Outcome::has_discarded_records`]) covers all periods only if
     /// [`HeadSum`](crate::HeadSum) observed it and `showing` is the head's own display mode. Otherwise the result
     /// covers only the last periods.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let said = HeadSaid::while_it_ran(outcome).filter(|_| showing == head.head().raster().into());
+        let said = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
         said.map_or_else(|| Self::judged(outcome, showing, None), |said| said.error.clone())
     }
 
@@ -68,7 +69,7 @@ impl Budget {
     /// Returns the budget over the complete pictures in the window whose pose was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        if let Some(said) = HeadSaid::while_it_ran(outcome) {
+        if let Some(said) = HeadResults::from_observer(outcome) {
             return said.end_to_end;
         }
         let mut sum = BudgetSum::default();
@@ -88,10 +89,10 @@ impl Budget {
 impl Turns {
     /// Returns the rotation latencies of a run.
     pub(crate) fn of(outcome: &Outcome) -> Self {
-        if let Some(said) = HeadSaid::while_it_ran(outcome) {
+        if let Some(said) = HeadResults::from_observer(outcome) {
             return said.turns.clone();
         }
-        let mut sum = TurnSum::default();
+        let mut sum = RotationLatencySum::default();
         sum.take(&outcome.settled());
         sum.said()
     }
@@ -100,10 +101,10 @@ impl Turns {
 impl Steps {
     /// Returns the latencies of a step for each memory of a run; none where the run dropped its records unobserved.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
-        if let Some(said) = HeadSaid::while_it_ran(outcome) {
+        if let Some(said) = HeadResults::from_observer(outcome) {
             return said.steps.clone();
         }
-        if outcome.has_forgotten() {
+        if outcome.has_discarded_records() {
             return Vec::new();
         }
         let mut sum = StepSum::default();
