@@ -16,7 +16,7 @@ use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
-use pxpl5_gp::{GpTiming, Stage};
+use pxpl5_gp::{CodeUse, GpTiming, Stage};
 
 const KERNELS: [(Kernel, &str); 3] =
     [(frame(Schedule::Straight), "straight"), (frame(Schedule::Compiled), "compiled"), (frame(Schedule::Dual), "dual")];
