@@ -1,11 +1,13 @@
 //! The report of an experiment. Names of its numbers include the unit.
 
 use crate::budget::Budget;
+use crate::critical_path::CriticalPath;
 use crate::errors::PixelErrors;
 use crate::faces_report::FacesReport;
 use crate::head_results::{missing_results_warning, pixel_errors};
 use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
+use crate::utilisation::Utilisation;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Record};
@@ -98,7 +100,11 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Hash of all events of the run and of the statistics of this report.
+    /// How busy each kind of board was; nothing of a machine that has not run.
+    pub utilisation: Option<Utilisation>,
+    /// What the latency of the last complete pictures waited for; nothing where no picture was complete.
+    pub critical_path: Option<CriticalPath>,
+    /// Hash of all events of the run and of the statistics of this report up to `arp`.
     pub trace_hash: String,
     /// Number of events that the simulation handled.
     pub events: u64,
@@ -231,6 +237,8 @@ impl Report {
             // Parts that only some runs have.
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             arp: FacesReport::of(outcome),
+            utilisation: Utilisation::of(record),
+            critical_path: CriticalPath::of(outcome),
             trace_hash: String::new(),
             events: record.events(),
             vertex_transforms: record.vertex_transforms(),

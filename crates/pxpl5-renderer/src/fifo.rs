@@ -126,8 +126,26 @@ pub(crate) struct InputFifo {
     /// Time at which the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
+    /// Time for which blocking commands have held the controller, and the last of them.
+    blocked: Span,
+    last_block: Block,
     /// Record of arrivals and departures, kept only while the FIFO is watched.
     watched: Option<Watched>,
+}
+
+/// The last blocking command.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Block {
+    /// When the controller was free for the commands before it, and when the last of these ended.
+    pub(crate) begun_at: Time,
+    pub(crate) finished_at: Time,
+    /// When it started.
+    pub(crate) start: Time,
+    /// Execution time of the commands before it, since the blocking command before.
+    pub(crate) executed: Span,
+    /// Execution time of all commands before it, and when the blocking command before it ended.
+    busy: Span,
+    resumed_at: Time,
 }
 
 /// Record of the words that entered and left a watched FIFO. Times may lie in the future.
@@ -190,6 +208,8 @@ impl InputFifo {
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
             busy: Span::ZERO,
+            blocked: Span::ZERO,
+            last_block: Block::default(),
             watched: None,
         }
     }
@@ -211,12 +231,32 @@ impl InputFifo {
     /// Ends the blocking command.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
+        self.blocked += now.since(self.last_block.start);
+        self.last_block.resumed_at = now;
         self.advance()
     }
 
     /// Returns the execution time so far, without blocking commands.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
+    }
+
+    /// Returns the execution time up to an instant that is not before the last event. What has been received and is executed later is taken
+    /// to be executed without a gap.
+    pub(crate) fn busy_at(&self, now: Time) -> Span {
+        let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
+        Span(self.busy.0.saturating_sub(ahead))
+    }
+
+    /// Returns the time up to an instant for which blocking commands have held the controller.
+    pub(crate) fn blocked_at(&self, now: Time) -> Span {
+        let goes_on = self.free_at.is_none().then(|| now.0.saturating_sub(self.last_block.start.0));
+        self.blocked + Span(goes_on.unwrap_or(0))
+    }
+
+    /// Returns the last blocking command; what came before it is known once it has started.
+    pub(crate) const fn last_block(&self) -> Block {
+        self.last_block
     }
 
     pub(crate) fn watch(&mut self) {
@@ -365,8 +405,19 @@ impl InputFifo {
             watched.left.add(start, command.words);
         }
         self.free_at = command.span.map(|span| start + span);
-        if let Some(span) = command.span {
-            self.busy += span;
+        match command.span {
+            Some(span) => self.busy += span,
+            None => {
+                let before = self.last_block;
+                self.last_block = Block {
+                    begun_at: before.resumed_at,
+                    finished_at: free_at,
+                    start,
+                    executed: Span(self.busy.0 - before.busy.0),
+                    busy: self.busy,
+                    resumed_at: before.resumed_at,
+                };
+            }
         }
         command.span.is_none().then_some(start)
     }

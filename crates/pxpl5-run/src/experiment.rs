@@ -70,6 +70,7 @@ pub struct Experiment {
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
+    pub(crate) results_from: Option<PeriodNumber>,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
     pub(crate) rehearsed: Option<Arc<DryRun>>,
@@ -112,6 +113,7 @@ impl Experiment {
             level: Level::Transaction,
             head: None,
             on_demand: false,
+            results_from: None,
             estimates: None,
             sums: None,
             rehearsed: None,
@@ -249,6 +251,20 @@ impl Experiment {
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
+    }
+
+    /// Begins the result window at a period of the first display, or later where start-up takes longer. Runs of different pipelines are
+    /// evaluated over the same periods in this way, to within one interval between due pictures.
+    #[must_use]
+    pub const fn results_from(mut self, period: PeriodNumber) -> Self {
+        self.results_from = Some(period);
+        self
+    }
+
+    /// Returns the same experiment on another machine.
+    #[must_use]
+    pub fn with_machine(self, config: MachineConfig) -> Self {
+        Self { config, ..self }
     }
 
     /// Replaces the scene.
