@@ -3,6 +3,7 @@
 //! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. It goes from each piece of work to the
 //! piece whose end let it begin. Each instant of the latency belongs to one resource, so the shares add up to 1.
 
+use crate::resource::Resource;
 use crate::trail::{Step, Trail};
 use pxpl5_machine::Board;
 use pxpl5_run::{Outcome, PictureTimes};
@@ -10,61 +11,6 @@ use pxpl5_sim::Span;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
-
-/// What a piece of a latency waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Resource {
-    /// The display's next retrace, or its beam.
-    Retrace,
-    /// COPY: pixels go into a port of a display.
-    Ports,
-    /// COPY: pixels wait for a channel of the ring.
-    Ring,
-    /// Renderers execute commands.
-    Renderers,
-    /// Renderers move a region to their backing store, or wait for room there.
-    BackingStore,
-    /// EDIT and TRANSFORM on the graphics processors.
-    Transform,
-    /// Messages and tokens between graphics processors and to renderers: their software and their way.
-    Messages,
-    /// SEND on the host.
-    Host,
-    /// Nothing that the records tell.
-    Other,
-}
-
-impl Resource {
-    /// All of them, from the screen back to the host.
-    pub const ALL: [Self; 9] = [
-        Self::Retrace,
-        Self::Ports,
-        Self::Ring,
-        Self::Renderers,
-        Self::BackingStore,
-        Self::Transform,
-        Self::Messages,
-        Self::Host,
-        Self::Other,
-    ];
-
-    /// Returns what the resource does while a picture waits for it.
-    #[must_use]
-    pub const fn about(self) -> &'static str {
-        match self {
-            Self::Retrace => "the wait for the display's retrace",
-            Self::Ports => "COPY through the displays' ports",
-            Self::Ring => "the wait for a channel of the ring",
-            Self::Renderers => "execution of commands in the renderers",
-            Self::BackingStore => "moves to the renderers' backing store",
-            Self::Transform => "EDIT and TRANSFORM on the graphics processors",
-            Self::Messages => "messages and tokens of the graphics processors",
-            Self::Host => "SEND on the host",
-            Self::Other => "what no record tells",
-        }
-    }
-}
 
 /// The share of a latency that waits for one resource.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -162,7 +108,9 @@ const NAMED_ALONE: f64 = 0.75;
 impl fmt::Display for PathPart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {:.0} % of the latency", self.resource.about(), self.share * 100.0)?;
-        let is_of_one = self.share_of_board.is_some_and(|share| share >= NAMED_ALONE);
+        // A machine has one display and one ring; their names say nothing.
+        let is_shared = matches!(self.resource, Resource::Ports | Resource::Retrace | Resource::Ring);
+        let is_of_one = !is_shared && self.share_of_board.is_some_and(|share| share >= NAMED_ALONE);
         match &self.board {
             Some(board) if is_of_one => {
                 write!(f, " ({:.0} % of that: {board})", self.share_of_board.unwrap_or_default() * 100.0)

@@ -1,7 +1,7 @@
 //! Quantities of a run by name, for tables, CSV files and sweeps.
 
 use crate::Report;
-use crate::critical_path::Resource;
+use crate::resource::Resource;
 use crate::summary::summary;
 use parameters::nearest;
 use pxpl5_gp::Stage;

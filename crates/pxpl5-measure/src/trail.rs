@@ -1,6 +1,6 @@
 //! Follows a picture backwards through what it waited for.
 
-use crate::critical_path::Resource;
+use crate::resource::Resource;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Arrival, Board, Record};
 use pxpl5_renderer::DrawnRegion;

@@ -103,7 +103,7 @@ pub struct DrawnRegion {
     pub words: u32,
     /// When the controller had done with the region before.
     pub begun_at: Time,
-    /// When the last command before the copy command had been executed.
+    /// When the last command before the copy command had been executed, and the controller waited for the copy command.
     pub finished_at: Time,
     /// When the copy command started; later than `finished_at` where it came later.
     pub copy_at: Time,

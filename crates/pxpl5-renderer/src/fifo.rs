@@ -129,14 +129,20 @@ pub(crate) struct InputFifo {
     /// Time for which blocking commands have held the controller, and the last of them.
     blocked: Span,
     last_block: Block,
+    /// Begin and end of the last wait of the controller for commands.
+    last_wait: (Time, Time),
     /// Record of arrivals and departures, kept only while the FIFO is watched.
     watched: Option<Watched>,
 }
 
+/// Execution time up to which commands behind a wait are the selection of the region to copy: 6 clocks of 40 MHz are 150 ns.
+const SELECTION: Span = Span::from_ns(1_000);
+
 /// The last blocking command.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// When the controller was free for the commands before it, and when the last of these ended.
+    /// When the controller was free for the commands before it, and when the last of these ended. The selection of its region does not count
+    /// where the controller waited for it.
     pub(crate) begun_at: Time,
     pub(crate) finished_at: Time,
     /// When it started.
@@ -210,6 +216,7 @@ impl InputFifo {
             busy: Span::ZERO,
             blocked: Span::ZERO,
             last_block: Block::default(),
+            last_wait: (Time::ZERO, Time::ZERO),
             watched: None,
         }
     }
@@ -344,6 +351,7 @@ impl InputFifo {
         let on_channel = self.word * words;
         let complete = self.left.entered(first, first + words - 1, self.last_word_at + on_channel, self.word);
         let start = free_at.max(complete);
+        self.note_wait(free_at, start);
         let made_room_for = first + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
         // The last word enters when the commands before it have made room.
@@ -356,6 +364,14 @@ impl InputFifo {
         self.words_left = end;
         self.free_at = Some(start + span * count);
         self.busy += span * count;
+    }
+
+    /// Notes that the controller waited for commands, if it did.
+    #[inline]
+    fn note_wait(&mut self, from: Time, to: Time) {
+        if to > from {
+            self.last_wait = (from, to);
+        }
     }
 
     /// Returns the time at which the next `words` words have all entered; `None` while the time depends on a blocking
@@ -397,6 +413,10 @@ impl InputFifo {
     /// Starts a complete command when the controller is free. Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
+        // The words of a copy command arrive behind those of its selection; that is no wait for commands of the region.
+        if command.span.is_some() {
+            self.note_wait(free_at, start);
+        }
         let made_room_for = self.words_left + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count: 1, words_each: 0, step: Span::ZERO });
         self.words_left += u64::from(command.words);
@@ -409,9 +429,13 @@ impl InputFifo {
             Some(span) => self.busy += span,
             None => {
                 let before = self.last_block;
+                // A copy command that came late was preceded by the selection of its region at most.
+                let (idle_from, idle_to) = self.last_wait;
+                let is_late = idle_from >= before.resumed_at && free_at.0.saturating_sub(idle_to.0) <= SELECTION.0;
+                let finished_at = if is_late { idle_from.min(free_at) } else { free_at };
                 self.last_block = Block {
                     begun_at: before.resumed_at,
-                    finished_at: free_at,
+                    finished_at,
                     start,
                     executed: Span(self.busy.0 - before.busy.0),
                     busy: self.busy,
