@@ -95,9 +95,10 @@ pub(crate) fn table() -> Fallible<String> {
     let simulating: f64 = pieces.iter().map(|piece| piece.0).sum();
     let alone = makespan(&pieces, 0);
     let mut text = format!(
-        "Pieces of {} regions in {pairs} stereo pairs of the head, measured one by one: {:.2} ms a pair of the simulating thread, {:.2} ms \
-         of pixels. The schedule is simulated from them: one thread simulates, the others take regions from its queue of {}; \
-         where that is full, and at the end, it takes part. Goal on two threads: 7 ms.\n\n\
+        "The times of {} regions in {pairs} stereo pairs of the head were measured one by one. A pair takes {:.2} ms on the \
+         simulating thread, and {:.2} ms of pixels. The schedule is simulated from these times. One thread simulates, and the \
+         other threads take regions from its queue of {}. The simulating thread draws too when the queue is full, and at the \
+         end. The goal on two threads is 7 ms.\n\n\
          | threads | ms a pair | faster than one | of what the simulating thread alone allows |\n|---|---|---|---|\n",
         pieces.len(),
         simulating / pairs as f64 * 1e3,

@@ -2,7 +2,7 @@
 //! when its first fields show that it would exceed a limit.
 
 use crate::error::CliError;
-use crate::estimate::{Estimate, Work};
+use crate::estimate::{Estimate, Study, Work};
 use crate::numbers::{count_of, whole};
 use clap::Args;
 use std::cell::OnceCell;
@@ -78,6 +78,16 @@ impl BudgetArgs {
     pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
         self.admit_estimate(whole, "simulate fewer fields")
+    }
+
+    /// Refuses a command that simulates a fixed set of experiments before it starts; `advice` says how to make it smaller.
+    ///
+    /// # Errors
+    ///
+    /// As [`BudgetArgs::admit`].
+    pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        self.admit_estimate(study.estimate(threads), advice)
     }
 
     /// Refuses a command if `estimate` exceeds the budget. `advice` tells the user how to reduce the work.

@@ -1,6 +1,7 @@
 //! The command `pxpl5 demo`, which shows Rendering Control and Slats on built-in scenes. `pxpl5` without a command
 //! does the same.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::output::{OutputFolder, timeline};
 use crate::run::{comparison, pictures};
@@ -24,13 +25,15 @@ pub(crate) struct DemoArgs {
     /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    budget: BudgetArgs,
 }
 
 const OUT: &str = "out";
 
 impl Default for DemoArgs {
     fn default() -> Self {
-        Self { out: OUT.into(), quiet: false }
+        Self { out: OUT.into(), quiet: false, budget: BudgetArgs::default() }
     }
 }
 
@@ -77,8 +80,7 @@ struct Run {
 
 pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
     let folder = OutputFolder::of_run(&args.out, "demo")?;
-    let runs: Vec<Run> =
-        EXPERIMENTS.iter().map(|(name, text)| one(name, text, args.quiet)).collect::<Result<_, _>>()?;
+    let runs: Vec<Run> = EXPERIMENTS.iter().map(|(name, text)| one((name, text), &args)).collect::<Result<_, _>>()?;
     // Files are written even with --quiet.
     write(folder, &runs)?;
     if args.quiet {
@@ -88,10 +90,10 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
     print(&format!("{}\n{}", table(&columns), closing(&runs, &args)))
 }
 
-fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
+fn one((name, text): (&'static str, &str), args: &DemoArgs) -> Result<Run, CliError> {
     let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
-    let results =
-        Results::of_run(SnapshotArgs::default().simulate(&plan, How { quiet, ..How::default() })?.long_enough()?);
+    let how = How { quiet: args.quiet, budget: args.budget, ..How::default() };
+    let results = Results::of_run(SnapshotArgs::default().simulate(&plan, how)?.long_enough()?);
     let comparison = comparison(&plan, &results);
     let (outcome, report) = results.run.ok_or_else(|| CliError::failure("a run without events"))?;
     Ok(Run { name, outcome, report, comparison })

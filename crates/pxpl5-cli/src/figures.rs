@@ -1,12 +1,14 @@
 //! The command `pxpl5 figures`, which compares every published figure with a simulation.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Study;
 use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
 use pxpl5::arp::figures::Row;
-use pxpl5::figures::{Bench, FigureFamily, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
+use pxpl5::figures::{Bench, FIGURES, FigureFamily, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -16,6 +18,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 figures
+  pxpl5 figures --only 4,7               these figures, without their intervals
   pxpl5 figures --json
   pxpl5 figures --write ACCURACY.md
   pxpl5 figures --check ACCURACY.md      fails when the file is not what the figures give")]
@@ -29,10 +32,19 @@ pub(crate) struct FiguresArgs {
     /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
+    /// Measure only these figures of the main table, separated by commas. Each row is printed when it is measured.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json"])]
+    only: Vec<String>,
+    #[command(flatten)]
+    budget: BudgetArgs,
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     // Open the output first, so that a bad path fails before the simulations.
+    if !args.only.is_empty() {
+        return chosen(&args.only);
+    }
+    args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
@@ -44,6 +56,28 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
         fresh(path, &markdown(&figures), "figures")?;
     }
     print(&if args.json { json_text(&figures) } else { text(&figures) })
+}
+
+/// Measures and prints chosen figures of the main table, one after the other.
+///
+/// # Errors
+///
+/// Fails for a number without a row, and if an experiment fails.
+fn chosen(numbers: &[String]) -> Result<(), CliError> {
+    let all = FIGURES.map(|figure| figure.id).join(", ");
+    let find = |number: &String| {
+        let figure = FIGURES.iter().find(|figure| figure.id == number.as_str());
+        figure.ok_or_else(|| CliError::usage(format!("--only: expected numbers among {all}, found {number}")))
+    };
+    // All numbers are checked before the first experiment runs.
+    let figures = numbers.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    let bench = Bench::new(Level::Transaction);
+    print(HEADER)?;
+    for figure in figures {
+        let measured = bench.measure(figure.id).map_err(CliError::failure)?;
+        print(&row_text(&FigureRow::new(figure, measured)))?;
+    }
+    Ok(())
 }
 
 /// Checks that a generated document is the one that `subcommand` would write now.
@@ -92,7 +126,7 @@ fn of_family(family: &FigureFamily) -> String {
 pub(crate) fn family_rows(rows: &[Row]) -> String {
     let mut text = format!(
         "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
-        "", "#", "published", "simulated", "unit", "error", "standing", "what"
+        "", "#", "published", "simulated", "unit", "error", "provenance", "what"
     );
     // Shapes without a published number show "-".
     for row in rows {
@@ -115,20 +149,20 @@ pub(crate) fn family_rows(rows: &[Row]) -> String {
     text
 }
 
+/// Heads of the columns of the main table.
+const HEADER: &str = "#     published  simulated  unit             error  interval               provenance what\n";
+
 /// Formats the rows of the figures of Pixel-Planes 5.
 fn own(rows: &[FigureRow]) -> String {
-    let mut text = format!(
-        "{:<4} {:>10} {:>10}  {:<13} {:>8}  {:<22} {:<7} {}\n",
-        "#", "published", "simulated", "unit", "error", "interval", "standing", "what"
-    );
-    for row in rows {
-        let interval = row.interval.map_or(String::new(), |[low, high]| format!("{low:.2} to {high:.2}"));
-        let miss = if row.misses() { "miss: " } else { "" };
-        let _ = writeln!(
-            text,
-            "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<8} {miss}{}",
-            row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
-        );
-    }
-    text
+    rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
+}
+
+/// Formats a row of the main table.
+fn row_text(row: &FigureRow) -> String {
+    let interval = row.interval.map_or(String::new(), |[low, high]| format!("{low:.2} to {high:.2}"));
+    let miss = if row.misses() { "miss: " } else { "" };
+    format!(
+        "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<10} {miss}{}\n",
+        row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
+    )
 }

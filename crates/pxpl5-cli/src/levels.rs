@@ -1,6 +1,8 @@
 //! The command `pxpl5 levels`, which compares the speed and accuracy of the levels of modelling.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Study;
 use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
@@ -43,6 +45,8 @@ pub(crate) struct LevelsArgs {
     /// Write only the tables of growth with triangles and boards to this file.
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
+    #[command(flatten)]
+    budget: BudgetArgs,
 }
 
 /// The recorded measurement of the levels, as JSON.
@@ -78,6 +82,8 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
 
 /// Measures all levels now, and adds today's date and a description of the host.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
+    let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
+    args.budget.admit_study(study, "take fewer --experiments")?;
     let bar = progress(0, "experiments and figures at all levels", false);
     let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
     let record = compare_with(query, |done, of| advance(&bar, done, of));

@@ -1,7 +1,9 @@
 //! The command `pxpl5 readings`, which ranks interpretations of the papers on Rendering Control by their fit to the
 //! published figures.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Study;
 use crate::numbers::whole;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
@@ -39,6 +41,8 @@ pub(crate) struct ReadingsArgs {
     /// Print nothing but errors (and the object of --json).
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    budget: BudgetArgs,
 }
 
 /// Runs the command `pxpl5 readings`.
@@ -47,6 +51,8 @@ pub(crate) struct ReadingsArgs {
 ///
 /// Fails if a figure cannot be simulated.
 pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
+    let study = Study::Readings { seeds: args.seeds, frames: args.frames };
+    args.budget.admit_study(study, "take fewer --seeds or --frames")?;
     let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let bar = progress(0, "readings", args.quiet);
     let readings = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));

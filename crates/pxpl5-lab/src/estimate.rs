@@ -227,6 +227,54 @@ impl Work {
     }
 }
 
+/// A command that simulates a fixed set of experiments, and the settings that decide on its cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Study {
+    /// All published figures.
+    Figures,
+    /// The ranking of interpretations ([`crate::readings`]): seeds and frames of figure 7's fly-through.
+    Readings {
+        /// Seeds of the fly-through.
+        seeds: u64,
+        /// Frames of each seed.
+        frames: u64,
+    },
+    /// The comparison of the levels of modelling ([`crate::levels`]).
+    Levels {
+        /// Random experiments for the error against the cycle level.
+        experiments: u64,
+        /// True if the speeds are measured too.
+        measures_speeds: bool,
+    },
+}
+
+/// CPU seconds of the studies, measured with the profile `dist`: all figures; rankings without and with fly-throughs of some frames; figures at
+/// all levels, random experiments, and speeds.
+const FIGURES_S: f64 = 35.0;
+const READINGS_S: f64 = 2.0;
+const READINGS_FRAME_S: f64 = 0.075;
+const LEVELS_S: f64 = 110.0;
+const LEVELS_EXPERIMENT_S: f64 = 0.2;
+const SPEEDS_S: f64 = 30.0;
+/// Peak memory of the studies, bytes: at most 53 MB measured with two threads.
+const STUDY_BYTES: f64 = 60e6;
+
+impl Study {
+    /// Estimates the memory and the time on a number of threads.
+    #[must_use]
+    pub fn estimate(self, threads: usize) -> Estimate {
+        let core_seconds = match self {
+            Self::Figures => FIGURES_S,
+            Self::Readings { seeds, frames } => READINGS_S + READINGS_FRAME_S * (seeds * frames) as f64,
+            Self::Levels { experiments, measures_speeds } => {
+                let speeds = if measures_speeds { SPEEDS_S } else { 0.0 };
+                LEVELS_S + LEVELS_EXPERIMENT_S * experiments as f64 + speeds
+            }
+        };
+        Estimate { bytes: STUDY_BYTES, seconds: BUSY * core_seconds / threads.max(1) as f64 }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
