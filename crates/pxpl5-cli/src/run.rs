@@ -161,6 +161,17 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
             error.pixels.n
         );
     }
+    if report.arp.is_none() {
+        let hmd = &report.hmd;
+        let _ = writeln!(
+            text,
+            "Display: {} degrees wide, eyes {} mm apart with parallel axes, near {} m, far {} m, no lens (hmd.*).",
+            hmd.horizontal_fov_deg,
+            hmd.eye_separation_m * 1e3,
+            hmd.near_m,
+            hmd.far_m
+        );
+    }
     if let Some(utilisation) = &report.utilisation {
         let _ = writeln!(text, "\n{utilisation}.");
     }
