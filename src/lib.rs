@@ -70,18 +70,18 @@ pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
-    SnapshotError, Suitability, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures,
-    readings, registry, rig, suitability, sweep, tracking_parameters,
+    SnapshotError, Suitability, WhatIf, Workstation, compare, figures, growth, intervals, levels, limit,
+    pipeline_figures, readings, registry, rig, suitability, sweep, tracking_parameters, what_if,
 };
 pub use pxpl5_machine::{
     Arrival, Board, ConfigError, EventDescription, LateRegion, Machine, MachineConfig, Observation, Optimization,
     PRESETS, Parameter, Ports, Preset, Record, RunError, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, ErrorCauses, ErrorPart, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS, LatencyCurve,
-    LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, Percentiles, PixelErrors, QUANTITIES,
-    Quantity, RasterOffsets, Registration, Report, Results, Showing, SurfaceStatistics, TooHeavy, picture,
-    side_by_side,
+    Budget, CriticalPath, ErrorCauses, ErrorPart, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS,
+    LatencyCurve, LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, PathPart, Percentiles,
+    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Resource, Results, Showing,
+    SurfaceStatistics, TooHeavy, Utilisation, picture, side_by_side,
 };
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,

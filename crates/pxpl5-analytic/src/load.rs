@@ -4,7 +4,7 @@ use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformC
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
-use pxpl5_scene::{Hmd, HmdConfig};
+use pxpl5_scene::Hmd;
 use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
@@ -56,7 +56,7 @@ impl Load {
     ///
     /// # Panics
     ///
-    /// Never, because the head-mounted display of the papers is in range.
+    /// Never, because the head-mounted display of an experiment is in range.
     pub fn of_views(
         experiment: &Experiment,
         viewport: Viewport,
@@ -65,7 +65,7 @@ impl Load {
     ) -> Result<Vec<Self>, ExperimentError> {
         // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
-        let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+        let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
         let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let share = Share::new(list, 0, 1);
         let layout = Layout::rendering_control_phong();

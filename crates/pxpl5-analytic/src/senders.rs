@@ -22,7 +22,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::Work;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
-use pxpl5_scene::{Hmd, HmdConfig};
+use pxpl5_scene::Hmd;
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, MAX_MESSAGE_WORDS, RegionId, ViewNumber};
 use slats::CLUMP;
@@ -76,7 +76,7 @@ impl Clumps {
     ///
     /// # Panics
     ///
-    /// Never, because the head-mounted display of the papers is in range.
+    /// Never, because the head-mounted display of an experiment is in range.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,
@@ -84,7 +84,7 @@ impl Clumps {
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
-        let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+        let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
         let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let view = views(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);

@@ -19,6 +19,7 @@ mod compare;
 mod completions;
 mod debug;
 mod demo;
+mod diff;
 mod error;
 mod estimate;
 mod figures;
@@ -105,6 +106,8 @@ enum Command {
     Plot(plot::PlotArgs),
     /// Measure latency from outside with a pendulum and photodiodes, and compare with the system's time stamps.
     Rig(rig::RigArgs),
+    /// Compare two results: settings, numbers and pictures.
+    Diff(diff::DiffArgs),
     /// Write one HTML page of a results folder.
     Report(report::ReportArgs),
     /// Run one experiment and write a trace of all events.
@@ -159,6 +162,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Merge(args)) => merge::run(args),
         Some(Command::Plot(args)) => plot::run(args),
         Some(Command::Rig(args)) => rig::run(args),
+        Some(Command::Diff(args)) => diff::run(args),
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Debug(args)) => debug::run(args),

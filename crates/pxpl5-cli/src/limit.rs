@@ -6,13 +6,13 @@ use crate::estimate::Work;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
-use crate::terminal::{print, warn};
+use crate::terminal::{advance, print, progress, warn};
 use clap::Args;
-use pxpl5::limit::{Limit, LimitQuery, Model};
-use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, TestScene};
+use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, Values};
+use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, TestScene};
 use serde_json::json;
 
-/// Find the largest number of triangles that a pipeline draws in time.
+/// Find the largest number of triangles that a pipeline draws in time, or the values of a setting that reach a goal.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 limit --pipeline slats                            140 triangles were published (TR94)
@@ -23,8 +23,11 @@ use serde_json::json;
   pxpl5 limit --pipeline slats --scene mig                the aircraft, with ever more of its triangles
   pxpl5 limit --pipeline rendering-control --latency 5    fields
   pxpl5 limit --pipeline slats --set gp.triangle_ns=20000
+  pxpl5 limit --pipeline rendering-control --scene head --machine large --over machine.n_gps --rate 15
+  pxpl5 limit --pipeline rendering-control --scene mig --over machine.n_renderers --latency 6
 
-Which triangles and what must hold is the pipeline's own, unless said.")]
+Which triangles and what must hold is the pipeline's own, unless said. Of --over KEY the goal may be reached from a value on, up to one, or
+in a part of the range; the ends of the range and three values between them are tried first.")]
 pub(crate) struct LimitArgs {
     #[command(flatten)]
     pipeline: PipelineOptions,
@@ -45,6 +48,15 @@ pub(crate) struct LimitArgs {
     /// typical otherwise.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
+    /// What grows: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
+    #[arg(long, value_name = "KEY")]
+    over: Option<String>,
+    /// Least value of --over that is tried; default: 1 for boards, else the least that the sources allow.
+    #[arg(long, value_name = "VALUE", requires = "over")]
+    from: Option<f64>,
+    /// Greatest value of --over that is tried; default: that of the largest preset for boards, else the greatest that the sources allow.
+    #[arg(long, value_name = "VALUE", requires = "over")]
+    to: Option<f64>,
     /// Minimum updates per second.
     #[arg(long, value_name = "HZ", conflicts_with = "latency")]
     rate: Option<f64>,
@@ -65,13 +77,36 @@ pub(crate) struct LimitArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
+    /// Show no progress.
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
+    if let Some(key) = args.over.as_deref().filter(|key| *key != "triangles") {
+        return over(&args, key);
+    }
+    if args.from.or(args.to).is_some() {
+        return Err(CliError::usage("--from and --to: expected a key with --over that is not triangles"));
+    }
     let query = args.query()?;
-    let limit = query.search()?;
+    let bar = progress(SIZES as u64, "sizes", args.quiet);
+    let limit = query.search_with(|tried| advance(&bar, tried, tried.max(SIZES as u64)))?;
+    bar.finish_and_clear();
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
+
+/// Searches over a setting.
+fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
+    let (query, plan) = args.over_query(key)?;
+    let bar = progress(VALUES, "values", args.quiet);
+    let limit = query.search(|tried| advance(&bar, tried, tried.max(VALUES))).map_err(CliError::failure)?;
+    bar.finish_and_clear();
+    print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
+}
+
+/// Values that a search over a setting tries: five, and two halvings of 64 steps.
+const VALUES: u64 = 12;
 
 /// Maximum number of sizes that a search simulates: twice the number of halvings of the whole range.
 const SIZES: usize = 40;
@@ -103,6 +138,46 @@ impl LimitArgs {
             self.budget.admit_all([size; SIZES], 1)?;
         }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
+    }
+
+    /// The search over a setting, with the experiment as it stands at the greatest value.
+    fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
+        let mut file = self.file()?;
+        if let Some(scene) = self.test_scene() {
+            return Err(CliError::usage(format!(
+                "--scene: expected a number of triangles with --over {key}, such as {}:1000, found {}",
+                scene.name(),
+                scene.name()
+            )));
+        }
+        let first = file.resolve()?;
+        let fields = self.fields.unwrap_or(first.limit.fields).max(LEAST_FIELDS);
+        file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
+        let usual = || OverQuery::usual_values(&first, key);
+        let values = match (self.from, self.to) {
+            (None, None) => usual()?,
+            (from, to) => {
+                let (from, to) = match (from, to) {
+                    (Some(from), Some(to)) => (from, to),
+                    _ => (
+                        from.map_or_else(|| usual().map(|v| v.from), Ok)?,
+                        to.map_or_else(|| usual().map(|v| v.last()), Ok)?,
+                    ),
+                };
+                let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < 1e15;
+                let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
+                let refused = || CliError::usage(format!("--from and --to: expected a range, found {from} to {to}"));
+                values.ok_or_else(refused)?
+            }
+        };
+        let mut last = file.clone();
+        last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
+        let plan = last.resolve()?;
+        warn(&first.warnings(), self.quiet);
+        let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
+        self.budget.admit_all([size; VALUES as usize], 1)?;
+        let goal = self.goal()?.unwrap_or(first.limit.goal);
+        Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
     }
 
     /// Returns the test scene of the papers that `--scene` names, if any.
@@ -150,10 +225,69 @@ impl LimitArgs {
     }
 }
 
+/// A goal in words.
+fn goal_text(goal: Goal) -> String {
+    match goal {
+        Goal::NoMissedRetrace => "every picture that is due is shown in time".to_owned(),
+        Goal::RateHz(hz) => format!("at least {hz} updates a second (as the papers count: 60 stand for 59.94)"),
+        Goal::LatencyFields(fields) => format!("a mean latency of at most {fields} fields"),
+    }
+}
+
+fn over_text(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> String {
+    let values = &query.values;
+    let text = |value: f64| values.text(value);
+    let key = &query.key;
+    let answer = match (limit.reached, limit.least, limit.most) {
+        (false, ..) => format!("none up to {}", text(values.last())),
+        (true, None, None) => format!("all from {} to {}", text(values.from), text(values.last())),
+        (true, Some(least), None) => format!("at least {}", text(least)),
+        (true, None, Some(most)) => format!("at most {}", text(most)),
+        (true, Some(least), Some(most)) => format!("from {} to {}", text(least), text(most)),
+    };
+    let because = match (&limit.because, limit.missed_at) {
+        (Some(because), Some(at)) => format!(": with {}, {because}", text(at)),
+        _ => String::new(),
+    };
+    let tried: Vec<String> = limit
+        .tried
+        .iter()
+        .map(|(value, hit)| format!("{}{}", text(*value), if *hit { " reached" } else { "" }))
+        .collect();
+    format!(
+        "{} with {}: {key} {answer}{because}\nGoal: {}.\n{} simulated for {}: {}.\n",
+        plan.pipeline.name(),
+        plan.scene.name,
+        goal_text(query.goal),
+        were(limit.tried.len() as u64, "value"),
+        count_of(plan.fields, "field"),
+        tried.join(", ")
+    )
+}
+
+fn over_json(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> Result<String, CliError> {
+    let mut object = json!({
+        "schema": "pxpl5-limit-over/1",
+        "over": query.key,
+        "goal": query.goal,
+        "values": query.values,
+        "pipeline": plan.pipeline.name(),
+        "scene": plan.scene.name,
+        "machine": plan.machine.preset,
+        "n_gps": plan.machine.n_gps,
+        "n_renderers": plan.machine.n_renderers,
+        "fields": plan.fields,
+        "level": plan.level.name(),
+    });
+    object["limit"] = serde_json::to_value(limit).map_err(CliError::failure)?;
+    Ok(format!("{object:#}\n"))
+}
+
 fn json_text(query: &LimitQuery, limit: Limit) -> String {
+    let has_limit = !is_without(limit);
     let object = json!({
         "schema": "pxpl5-limit/2",
-        "triangles": limit.triangles,
+        "triangles": has_limit.then_some(limit.triangles),
         "first_miss": limit.first_miss,
         "island": limit.island,
         "unbroken_from": limit.unbroken_from,
@@ -171,12 +305,27 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
+/// Returns true where no size missed the goal, up to the most that is tried: the pipeline has no limit.
+const fn is_without(limit: Limit) -> bool {
+    limit.first_miss.is_none() && limit.triangles == CEILING
+}
+
 /// Returns the name of the scene drawn at every size.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }
 
 fn text(query: &LimitQuery, limit: Limit) -> String {
+    let goal = goal_text(query.criterion.goal);
+    if is_without(limit) {
+        return format!(
+            "{} on {} and {} has no limit: {CEILING} triangles of {} reach the goal as well\nGoal: {goal}.\n",
+            query.pipeline.name(),
+            count_of(query.config.n_gps, "GP"),
+            count_of(query.config.n_renderers, "renderer"),
+            scene(query),
+        );
+    }
     let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
     let island = limit.island.map_or(String::new(), |n| {
         format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
@@ -188,7 +337,7 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
         String::new()
     };
     format!(
-        "{} on {} and {}: at most {} of {} ({first_miss}; {} simulated for {})\n{row}{island}",
+        "{} on {} and {}: at most {} of {} ({first_miss}; {} simulated for {})\nGoal: {goal}.\n{row}{island}",
         query.pipeline.name(),
         count_of(query.config.n_gps, "GP"),
         count_of(query.config.n_renderers, "renderer"),

@@ -12,7 +12,8 @@ use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::{
-    ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId,
+    ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId, WhatIf,
+    what_if,
 };
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -50,6 +51,9 @@ pub(crate) struct RunArgs {
     snapshot: SnapshotArgs,
     #[command(flatten)]
     budget: BudgetArgs,
+    /// Also tell what 10 % more of each resource would bring: by the pipeline's closed form where it holds, else by six more runs.
+    #[arg(long)]
+    what_if: bool,
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
@@ -71,10 +75,12 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     // A run without a latency still writes its files and its report, and then ends with an error.
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
+    let more = if args.what_if { Some(more(&plan)?) } else { None };
     if args.json {
-        print(&format!("{}\n", json(report)?))?;
+        print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {
         print(&text(&plan, &results, report, written))?;
+        print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
     }
     // The exit code tells scripts that the report lacks a latency.
     match too_short {
@@ -82,6 +88,36 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         None if report.shown == 0 => Err(nothing_shown(report)),
         None => Ok(()),
     }
+}
+
+/// What 10 % more of each resource would bring.
+fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
+    let experiment = plan.experiment(crate::scenes::load(plan, false)?);
+    what_if(&plan.registry, &experiment).map_err(CliError::from)
+}
+
+fn more_text(more: &[WhatIf]) -> String {
+    let mut text = String::new();
+    let level = more.first().map_or("", |more| more.level);
+    let heads = ["10 % more of", "setting", "latency, ms", "updates, Hz"];
+    let _ = writeln!(text, "\n{:<32} {:<42} {:<16} {} ({level} level)", heads[0], heads[1], heads[2], heads[3]);
+    let cell = |[before, after]: [Option<f64>; 2]| match before.zip(after) {
+        Some((before, after)) => format!("{before:.1} to {after:.1}"),
+        None => "-".to_owned(),
+    };
+    for WhatIf { resource, key, from, to, latency_ms, updates_hz, .. } in more {
+        let setting = format!("{key} {from} to {to}");
+        let _ = writeln!(text, "{resource:<32} {setting:<42} {:<16} {}", cell(*latency_ms), cell(*updates_hz));
+    }
+    text
+}
+
+/// The report, with what more would bring where that was asked for.
+fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
+    let Some(more) = more else { return json(report) };
+    let mut value = serde_json::to_value(report).map_err(CliError::failure)?;
+    value["what_if"] = serde_json::to_value(more).map_err(CliError::failure)?;
+    serde_json::to_string_pretty(&value).map_err(CliError::failure)
 }
 
 /// Returns the error for a run in which every picture came after its deadline. A longer run would not help.
@@ -124,6 +160,29 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
             known(error.degrees.mean, 3),
             error.pixels.n
         );
+    }
+    if report.arp.is_none() {
+        let hmd = &report.hmd;
+        let _ = writeln!(
+            text,
+            "Display: {} degrees wide, eyes {} mm apart with parallel axes, near {} m, far {} m, no lens (hmd.*).",
+            hmd.horizontal_fov_deg,
+            hmd.eye_separation_m * 1e3,
+            hmd.near_m,
+            hmd.far_m
+        );
+    }
+    if let Some(utilisation) = &report.utilisation {
+        let _ = writeln!(text, "\n{utilisation}.");
+    }
+    if let Some(path) = &report.critical_path {
+        let _ = writeln!(text, "Limited by: {}.", path.limited_by);
+        let others = path.parts.iter().skip(1).filter(|part| part.share >= 0.005);
+        let others: Vec<String> =
+            others.map(|part| format!("{} {:.0} %", part.resource.about(), part.share * 100.0)).collect();
+        if !others.is_empty() {
+            let _ = writeln!(text, "  then: {}.", others.join(", "));
+        }
     }
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());

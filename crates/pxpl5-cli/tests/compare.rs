@@ -94,7 +94,8 @@ fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does
     let settings = ["--machine", "small-hmd", "--set", "fields=24"];
     let only = ["--only", "slats,jitp-scanline-racing"];
     let json = json(&compare(
-        &[settings.as_slice(), &["--scene", "mig", "--seeds", "1", "--head", "still", "--json"], &only].concat(),
+        &[settings.as_slice(), &["--scene", "mig", "--seeds", "1", "--head", "still", "--limits", "--json"], &only]
+            .concat(),
     ));
     let racing = row(&json, "jitp-scanline-racing");
     let could = racing["triangles_possible"].as_u64().expect("limits are searched for");

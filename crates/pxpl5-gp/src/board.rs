@@ -55,6 +55,25 @@ pub enum GpOutput {
 pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
+/// What the time of a board's CPU went to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GpUse {
+    /// All time that was spent.
+    pub busy: Span,
+    /// The part of the software that receives and sends messages.
+    pub messages: Span,
+    /// The part of the work that [answers](crate::Gp::answer) messages: bins that are handed over for a token.
+    pub tokens: Span,
+}
+
+impl GpUse {
+    /// Returns the rest: what programs do besides messages and tokens, such as EDIT and TRANSFORM.
+    #[must_use]
+    pub const fn work(&self) -> Span {
+        Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
+    }
+}
+
 struct Task {
     firmware: Firmware,
     priority: Priority,
@@ -91,6 +110,8 @@ impl GpBoard {
             memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
             processor: None,
             vertex_transforms: 0,
+            message_software: Span::ZERO,
+            answer_work: Span::ZERO,
             inbox: VecDeque::new(),
             batches: VecDeque::new(),
             in_flight: Vec::new(),
@@ -263,6 +284,13 @@ impl GpBoard {
     #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
+    }
+
+    /// Returns what the CPU's time went to, up to an instant that is not before the last event.
+    #[must_use]
+    pub fn used(&self, now: Time) -> GpUse {
+        let shared = self.shared.borrow();
+        GpUse { busy: shared.cpu.busy_at(now), messages: shared.message_software, tokens: shared.answer_work }
     }
 
     /// Returns the number of vertices that the programs have transformed

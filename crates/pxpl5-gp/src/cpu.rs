@@ -72,6 +72,13 @@ impl Cpu {
     pub(crate) const fn busy(&self) -> Span {
         self.busy
     }
+
+    /// Returns the time spent up to an instant that is not before the last call of [`Cpu::settle`].
+    pub(crate) fn busy_at(&self, now: Time) -> Span {
+        let Some((priority, since)) = self.running else { return self.busy };
+        let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);
+        self.busy + left.min(Span(now.0.saturating_sub(since.0)))
+    }
 }
 
 #[cfg(test)]

@@ -81,6 +81,9 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices transformed since the start.
     pub(crate) vertex_transforms: u64,
+    /// CPU time that the software of messages has asked for, and the work of answers to messages.
+    pub(crate) message_software: Span,
+    pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
     /// Messages of the current batch that were not accepted yet: their places in the batch and their receivers.

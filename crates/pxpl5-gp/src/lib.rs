@@ -46,7 +46,7 @@ mod window;
 mod work;
 
 pub use bench::BoardBench;
-pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
+pub use board::{GpBoard, GpEvent, GpOutput, GpUse, PLACE_BITS};
 pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
 pub use look::{GpSnapshot, ProgramSnapshot, WaitingMessageInfo};

@@ -54,7 +54,7 @@ impl Gp {
         // The costs follow in the order of the program: reception, work, messages.
         self.pay_for(received).await;
         if let Some(work) = work {
-            self.work(work).await?;
+            self.answer_work(work).await?;
         }
         // Each message needs the clump buffer; only the last one is sent without waiting.
         for message in messages {
@@ -138,7 +138,10 @@ impl Gp {
             }
         };
         match span {
-            Ok(span) => self.spend(span).await,
+            Ok(span) => {
+                self.shared.borrow_mut().message_software += span;
+                self.spend(span).await;
+            }
             Err(fault) => self.stop(fault).await,
         }
     }

@@ -32,16 +32,27 @@ impl Gp {
     ///
     /// [`Fault::Processor`] if its code does not reach its end.
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
-        let span = {
-            let shared = &mut *self.shared.borrow_mut();
-            shared.vertex_transforms += work.vertex_transforms();
-            match &mut shared.processor {
-                Some(processor) => work.by_code(&shared.timing, processor)?,
-                None => work.by_table(&shared.timing),
-            }
-        };
+        let span = self.time_of(work)?;
         self.spend(span).await;
         Ok(())
+    }
+
+    /// Does work that answers a message, which [`GpUse`](crate::GpUse) counts apart.
+    pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
+        let span = self.time_of(work)?;
+        self.shared.borrow_mut().answer_work += span;
+        self.spend(span).await;
+        Ok(())
+    }
+
+    /// Returns the time of work by the table or by code, and counts what the work transforms.
+    fn time_of(&self, work: &impl Work) -> Result<Span, Fault> {
+        let shared = &mut *self.shared.borrow_mut();
+        shared.vertex_transforms += work.vertex_transforms();
+        Ok(match &mut shared.processor {
+            Some(processor) => work.by_code(&shared.timing, processor)?,
+            None => work.by_table(&shared.timing),
+        })
     }
 
     /// Returns true if the time of this board's work comes from code.

@@ -9,6 +9,9 @@
 //! | differences between the levels of modelling | [`levels`] |
 //! | times of primitives in executed code | [`code_times`] |
 //! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
+//! | values of any setting that reach a goal | [`limit::OverQuery`] |
+//! | differences between two results | [`diff`] |
+//! | effect of 10 % more of each resource | [`what_if`] |
 //! | comparison of all low-latency methods | [`compare`] |
 //! | latency measured from outside | [`rig`] |
 //! | memory and time of an experiment on this computer | [`estimate`] |
@@ -24,6 +27,7 @@
 pub mod application_time;
 pub mod code_times;
 pub mod compare;
+pub mod diff;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
@@ -41,6 +45,7 @@ pub mod rig;
 mod snapshot;
 mod suitability;
 pub mod sweep;
+mod what_if;
 
 pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
@@ -50,6 +55,7 @@ pub use head_names::{MotionError, PREDICTORS, TRACKERS, motion, predictor, track
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use suitability::{Suitability, suitability};
+pub use what_if::{WhatIf, what_if};
 
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};

@@ -52,6 +52,8 @@ pub struct Machine {
     work_events: u64,
     /// Number of consecutive ticks of the first display without any other event between them.
     idle_ticks: u64,
+    /// The instant up to which it has run.
+    now: Time,
 }
 
 #[derive(Debug, Default)]
@@ -111,6 +113,8 @@ impl Machine {
                 hash: pxpl5_sim::TraceHash::default(),
                 events: 0,
                 vertex_transforms: 0,
+                elapsed: Time::ZERO,
+                processors_used: Vec::new(),
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
@@ -120,6 +124,7 @@ impl Machine {
             failure: None,
             work_events: 0,
             idle_ticks: 0,
+            now: Time::ZERO,
         })
     }
 
@@ -181,6 +186,8 @@ impl Machine {
         self.finish_pixels();
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
+        self.record.elapsed = self.now;
+        self.record.processors_used = self.processors.iter().map(|board| board.used(self.now)).collect();
         self.record
     }
 
@@ -261,7 +268,11 @@ impl Machine {
         if self.failure.is_some() {
             return None;
         }
-        let (now, event) = self.queue.next_event_before(end)?;
+        let Some((now, event)) = self.queue.next_event_before(end) else {
+            self.now = self.now.max(end);
+            return None;
+        };
+        self.now = now;
         self.handle(now, event);
         Some(now)
     }
@@ -461,6 +472,8 @@ impl Machine {
         let Self { record, contexts: Contexts { renderer: context, .. }, queue, pixels, .. } = self;
         // Let the renderer handle the event.
         record.renderers[board].handle(event, context.at(now));
+        let drawn = record.renderers[board].drain_drawn().map(|region| (board, region));
+        record.observation.drawn.extend(drawn);
         if let Some(traffic) = &mut record.observation.traffic {
             let changes = record.renderers[board].take_fifo_changes();
             traffic.fifo_changes.extend(changes.into_iter().map(|(time, words)| (board, time, words)));

@@ -2,6 +2,7 @@
 
 use crate::traffic::Traffic;
 use pxpl5_gp::{Mark, Stage, StageEdge};
+use pxpl5_renderer::DrawnRegion;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
@@ -62,6 +63,8 @@ pub struct Observation {
     pub arrivals: Vec<Arrival>,
     /// Swaps of double buffers, in the order in which displays made them.
     pub swaps: Vec<Swap>,
+    /// Renderer and region: the regions that were drawn, in the order in which their copy commands started.
+    pub drawn: Vec<(usize, DrawnRegion)>,
     /// Messages and FIFO levels. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
@@ -178,6 +181,7 @@ impl Observation {
         }
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
+        self.drawn.retain(|(_, region)| region.copy_at >= instant);
         // Keep the last old swap of each port: it tells which buffer is visible.
         let first_swap = self.first_swap();
         let mut last: BTreeMap<NodeId, u64> = BTreeMap::new();
@@ -189,6 +193,7 @@ impl Observation {
         // Keep capacity for twice the held records: a run that discards regularly needs the space again soon.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
+        self.drawn.shrink_to(2 * self.drawn.len());
         self.forgotten = DiscardedSummary { before: instant, first_swap, most_regions };
     }
 

@@ -4,6 +4,7 @@ use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
 use crate::ports::Ports;
 use pxpl5_display::{Display, Surface};
+use pxpl5_gp::GpUse;
 use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;
 use pxpl5_sim::{Span, Time, TraceHash};
@@ -22,6 +23,8 @@ pub struct Record {
     pub(crate) hash: TraceHash,
     pub(crate) events: u64,
     pub(crate) vertex_transforms: u64,
+    pub(crate) elapsed: Time,
+    pub(crate) processors_used: Vec<GpUse>,
 }
 
 impl Record {
@@ -149,6 +152,19 @@ impl Record {
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.events
+    }
+
+    /// Returns the instant up to which the machine ran; time zero while it still runs.
+    #[must_use]
+    pub const fn elapsed(&self) -> Time {
+        self.elapsed
+    }
+
+    /// Returns what the CPU time of the host and of the graphics processors went to, in the order of their ports; empty while the machine
+    /// still runs.
+    #[must_use]
+    pub fn processors_used(&self) -> &[GpUse] {
+        &self.processors_used
     }
 
     /// Returns the number of vertices that graphics processors transformed in the whole run.

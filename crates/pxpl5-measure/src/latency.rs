@@ -1,6 +1,7 @@
 //! Statistics of the latency of pictures and its parts.
 
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
+use std::fmt;
 
 /// Returns the latency parts of each complete picture in the window, as far as kept ([`pxpl5_run::Keep`]).
 #[must_use]
@@ -20,7 +21,7 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStati
 }
 
 /// Statistics of one part of the latency.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, PartialEq, serde::Serialize)]
 pub struct LatencyPartStatistics {
     /// Name of the part, as in [`LATENCY_PARTS`].
     pub name: String,
@@ -29,6 +30,16 @@ pub struct LatencyPartStatistics {
     /// The statistics, in milliseconds, and the definition of the part.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
+}
+
+/// Prints the name that the type had when hashes of reports were first published: the hash of a report covers this text.
+impl fmt::Debug for LatencyPartStatistics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, in_published_latency, statistics } = self;
+        let mut text = f.debug_struct("NamedStatistics");
+        text.field("name", name).field("in_published_latency", in_published_latency);
+        text.field("statistics", statistics).finish()
+    }
 }
 
 /// Latency of one surface, or of a pair of surfaces, up to an event.

@@ -6,6 +6,7 @@
 //! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
 //! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
+//! | How busy was each board, and what does the latency wait for? | [`Utilisation`], [`CriticalPath`] |
 //! | All results as numbers with units | [`Report`], [`Measure`] |
 //!
 //! [`Measured`] offers the most common measurements as methods of [`Outcome`].
@@ -15,6 +16,7 @@
 mod budget;
 mod causes;
 mod content;
+mod critical_path;
 mod distribution;
 mod drawn;
 mod error_sum;
@@ -31,16 +33,20 @@ mod quantity;
 mod raster;
 mod registration;
 mod report;
+mod resource;
 mod screen;
 mod shown;
 mod step_sum;
 mod summary;
 mod too_heavy;
+mod trail;
 mod turn_sum;
 mod turned;
+mod utilisation;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
+pub use critical_path::{CriticalPath, PICTURES_FOLLOWED, PathPart};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};
 pub use faces_report::{FacesReport, MemoryReport};
 pub use head_results::pixel_errors;
@@ -55,6 +61,10 @@ pub use quantity::{Measure, QUANTITIES, Quantity, Results};
 pub use raster::{RasterOffsets, Vdrt};
 pub use registration::Registration;
 pub use report::{HeadReport, Report};
+pub use resource::Resource;
 pub use summary::summary;
 pub use too_heavy::TooHeavy;
 pub use turn_sum::RotationPart;
+pub use utilisation::{
+    GpUtilisation, PortShare, PortUtilisation, RendererUtilisation, RingUtilisation, Shares, Utilisation,
+};

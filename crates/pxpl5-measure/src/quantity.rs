@@ -1,6 +1,7 @@
 //! Quantities of a run by name, for tables, CSV files and sweeps.
 
 use crate::Report;
+use crate::resource::Resource;
 use crate::summary::summary;
 use parameters::nearest;
 use pxpl5_gp::Stage;
@@ -52,8 +53,10 @@ const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of
 
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in time; only with a head.motion";
 
+const PATH: &str = "share of the latency that waits for this resource, 0 to 1, over the last complete pictures of the window; the shares of all resources add up to 1";
+
 /// All quantities by name. Quantities that need a simulated run have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 40] = [
+pub static QUANTITIES: [Quantity; 55] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -135,6 +138,39 @@ pub static QUANTITIES: [Quantity; 40] = [
     of_run("render_ms", "mean time of RENDER, an eye or a picture as the pipeline takes them", |o, _| {
         stage_ms(o, Stage::Render)
     }),
+    of_run(
+        "gp_busy",
+        "share of the run in which the CPUs of graphics processors were busy, mean over all, 0 to 1",
+        |_, r| Some(r.utilisation.as_ref()?.gps.busy.mean),
+    ),
+    of_run("gp_busy.max", "the same of the busiest graphics processor", |_, r| {
+        Some(r.utilisation.as_ref()?.gps.busy.max)
+    }),
+    of_run(
+        "renderer_busy.mean",
+        "share of the run in which renderers executed commands, mean over all, 0 to 1",
+        |_, r| Some(r.utilisation.as_ref()?.renderers.executing.mean),
+    ),
+    of_run("renderer_busy.max", "the same of the busiest renderer", |_, r| {
+        Some(r.utilisation.as_ref()?.renderers.executing.max)
+    }),
+    of_run(
+        "ring_busy",
+        "share of the run in which channels of the ring were occupied, mean over all, 0 to 1",
+        |_, r| Some(r.utilisation.as_ref()?.ring.channels.mean),
+    ),
+    of_run("port_busy", "share of the run in which the busiest port of a display received, 0 to 1", |_, r| {
+        Some(r.utilisation.as_ref()?.ports.busy.max)
+    }),
+    of_run("critical_path.retrace", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Retrace))),
+    of_run("critical_path.ports", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Ports))),
+    of_run("critical_path.ring", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Ring))),
+    of_run("critical_path.renderers", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Renderers))),
+    of_run("critical_path.backing_store", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::BackingStore))),
+    of_run("critical_path.transform", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Transform))),
+    of_run("critical_path.messages", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Messages))),
+    of_run("critical_path.host", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Host))),
+    of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
 /// Returns a count over the pictures due, or NaN if no picture was due.

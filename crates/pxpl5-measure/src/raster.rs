@@ -84,7 +84,7 @@ impl<'a> RasterOffsets<'a> {
             let pose = pose_of_field(&run, &shown, field)?;
             Some(vdrt.offset(field, &pose))
         });
-        Some(Self { display, view: view_of(display), offsets: offsets.collect() })
+        Some(Self { display, view: view_of(display, &run.hmd), offsets: offsets.collect() })
     }
 
     /// Returns the offset in one display period. `None` if nothing is shown or the picture was not drawn for a single

@@ -1,15 +1,18 @@
 //! The report of an experiment. Names of its numbers include the unit.
 
 use crate::budget::Budget;
+use crate::critical_path::CriticalPath;
 use crate::errors::PixelErrors;
 use crate::faces_report::FacesReport;
 use crate::head_results::{missing_results_warning, pixel_errors};
 use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
+use crate::utilisation::Utilisation;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Record};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster, ResultWindow};
+use pxpl5_scene::HmdConfig;
 use pxpl5_sim::{Time, TraceHash, mix};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -98,7 +101,13 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Hash of all events of the run and of the statistics of this report.
+    /// Head-mounted display before the viewer's eyes. Displays with faces around the head have optics of their own.
+    pub hmd: HmdConfig,
+    /// How busy each kind of board was; nothing of a machine that has not run.
+    pub utilisation: Option<Utilisation>,
+    /// What the latency of the last complete pictures waited for; nothing where no picture was complete.
+    pub critical_path: Option<CriticalPath>,
+    /// Hash of all events of the run and of the statistics of this report up to `arp`.
     pub trace_hash: String,
     /// Number of events that the simulation handled.
     pub events: u64,
@@ -150,6 +159,13 @@ impl HeadReport {
             error: pixel_errors(outcome)?,
         })
     }
+}
+
+/// Returns the head-mounted display with the number of pixels of the first surface.
+fn hmd_of(outcome: &Outcome) -> HmdConfig {
+    let hmd = *outcome.experiment().hmd();
+    let surface = outcome.record().display().surfaces().first();
+    surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd })
 }
 
 impl Report {
@@ -231,6 +247,9 @@ impl Report {
             // Parts that only some runs have.
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             arp: FacesReport::of(outcome),
+            hmd: hmd_of(outcome),
+            utilisation: Utilisation::of(record),
+            critical_path: CriticalPath::of(outcome),
             trace_hash: String::new(),
             events: record.events(),
             vertex_transforms: record.vertex_transforms(),

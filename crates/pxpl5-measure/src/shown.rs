@@ -5,6 +5,7 @@ use crate::screen::Screen;
 use crate::turned::LatchedFaces;
 use pxpl5_display::{Display, Surface};
 use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews, ResultWindow, SampledPose, Source, WARM_UP_PICTURES};
+use pxpl5_scene::HmdConfig;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -209,8 +210,7 @@ fn viewed(sampled: &SampledPose) -> Viewed {
 }
 
 /// Returns the projection of the head-mounted display on the first surface of a display.
-pub(crate) fn view_of(display: &dyn Display) -> HmdView {
-    let ntsc = HmdView::ntsc();
-    let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, ntsc.horizontal_deg());
-    display.surfaces().first().and_then(|surface| sized(surface).ok()).unwrap_or(ntsc)
+pub(crate) fn view_of(display: &dyn Display, hmd: &HmdConfig) -> HmdView {
+    let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, hmd.horizontal_fov_deg);
+    display.surfaces().first().and_then(|surface| sized(surface).ok()).unwrap_or_else(HmdView::ntsc)
 }

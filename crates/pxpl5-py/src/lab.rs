@@ -88,7 +88,14 @@ pub(crate) fn compare<'py>(
     limits: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let query = CompareQuery { shared: settings.file.clone(), only, seeds, limits, pictures: false };
+    let query = CompareQuery {
+        shared: settings.file.clone(),
+        only,
+        seeds,
+        limits,
+        pictures: false,
+        confidence: pxpl5::compare::CONFIDENCE,
+    };
     let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }

@@ -2,7 +2,7 @@
 
 use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
-use crate::fifo::{CommandBatch, InputFifo, Progress};
+use crate::fifo::{Block, CommandBatch, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::look::{RendererSnapshot, SentLists};
 use crate::timing::RendererTiming;
@@ -89,7 +89,26 @@ pub struct Renderer {
     stored: VecDeque<PendingCopy>,
     /// Lists received so far, kept only while the FIFO is watched.
     sent: Option<SentLists>,
+    /// Regions whose copy command has started since they were last asked for.
+    drawn: Vec<DrawnRegion>,
     stats: RendererStats,
+}
+
+/// A region that a renderer has drawn: when its commands were executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnRegion {
+    /// Where the region goes.
+    pub target: CopyTarget,
+    /// Words of its pixels that are sent.
+    pub words: u32,
+    /// When the controller had done with the region before.
+    pub begun_at: Time,
+    /// When the last command before the copy command had been executed, and the controller waited for the copy command.
+    pub finished_at: Time,
+    /// When the copy command started; later than `finished_at` where it came later.
+    pub copy_at: Time,
+    /// Execution time of the commands since `begun_at`; in the rest the controller waited for commands.
+    pub executed: Span,
 }
 
 /// Lists sent to a region context since it was cleared.
@@ -144,6 +163,7 @@ impl Renderer {
             storing: false,
             stored: VecDeque::new(),
             sent: None,
+            drawn: Vec::new(),
             stats,
         }
     }
@@ -251,6 +271,13 @@ impl Renderer {
             let progress = self.fifo.resume(context.now());
             return self.report(progress, context);
         };
+        if copy.order.way != CopyPath::FromBacking {
+            let Block { begun_at, finished_at, start, executed, .. } = self.fifo.last_block();
+            let target = copy.order.target;
+            let [_, _, width, height] = target.grid.rectangle(target.region);
+            let words = width * height * copy.order.content.words();
+            self.drawn.push(DrawnRegion { target, words, begun_at, finished_at, copy_at: start, executed });
+        }
         match copy.order.way {
             CopyPath::FromPixelMemory => self.transfer(&copy, context),
             CopyPath::FromBacking => self.release(copy.order.target, context),
@@ -362,6 +389,23 @@ impl Renderer {
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
+    }
+
+    /// Returns the time spent executing commands up to an instant that is not before the last event, without copies.
+    #[must_use]
+    pub fn busy_at(&self, now: Time) -> Span {
+        self.fifo.busy_at(now)
+    }
+
+    /// Returns the time up to an instant for which copy commands have held the controller.
+    #[must_use]
+    pub fn copying_at(&self, now: Time) -> Span {
+        self.fifo.blocked_at(now)
+    }
+
+    /// Takes the regions whose copy command has started, in order.
+    pub fn drain_drawn(&mut self) -> impl Iterator<Item = DrawnRegion> + '_ {
+        self.drawn.drain(..)
     }
 
     /// Returns pixel memory after all lists that were sent to each region context since its last clear.

@@ -126,8 +126,32 @@ pub(crate) struct InputFifo {
     /// Time at which the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
+    /// Time for which blocking commands have held the controller, and the last of them.
+    blocked: Span,
+    last_block: Block,
+    /// Begin and end of the last wait of the controller for commands.
+    last_wait: (Time, Time),
     /// Record of arrivals and departures, kept only while the FIFO is watched.
     watched: Option<Watched>,
+}
+
+/// Execution time up to which commands behind a wait are the selection of the region to copy: 6 clocks of 40 MHz are 150 ns.
+const SELECTION: Span = Span::from_ns(1_000);
+
+/// The last blocking command.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Block {
+    /// When the controller was free for the commands before it, and when the last of these ended. The selection of its region does not count
+    /// where the controller waited for it.
+    pub(crate) begun_at: Time,
+    pub(crate) finished_at: Time,
+    /// When it started.
+    pub(crate) start: Time,
+    /// Execution time of the commands before it, since the blocking command before.
+    pub(crate) executed: Span,
+    /// Execution time of all commands before it, and when the blocking command before it ended.
+    busy: Span,
+    resumed_at: Time,
 }
 
 /// Record of the words that entered and left a watched FIFO. Times may lie in the future.
@@ -190,6 +214,9 @@ impl InputFifo {
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
             busy: Span::ZERO,
+            blocked: Span::ZERO,
+            last_block: Block::default(),
+            last_wait: (Time::ZERO, Time::ZERO),
             watched: None,
         }
     }
@@ -211,12 +238,32 @@ impl InputFifo {
     /// Ends the blocking command.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
+        self.blocked += now.since(self.last_block.start);
+        self.last_block.resumed_at = now;
         self.advance()
     }
 
     /// Returns the execution time so far, without blocking commands.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
+    }
+
+    /// Returns the execution time up to an instant that is not before the last event. What has been received and is executed later is taken
+    /// to be executed without a gap.
+    pub(crate) fn busy_at(&self, now: Time) -> Span {
+        let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
+        Span(self.busy.0.saturating_sub(ahead))
+    }
+
+    /// Returns the time up to an instant for which blocking commands have held the controller.
+    pub(crate) fn blocked_at(&self, now: Time) -> Span {
+        let goes_on = self.free_at.is_none().then(|| now.0.saturating_sub(self.last_block.start.0));
+        self.blocked + Span(goes_on.unwrap_or(0))
+    }
+
+    /// Returns the last blocking command; what came before it is known once it has started.
+    pub(crate) const fn last_block(&self) -> Block {
+        self.last_block
     }
 
     pub(crate) fn watch(&mut self) {
@@ -304,6 +351,7 @@ impl InputFifo {
         let on_channel = self.word * words;
         let complete = self.left.entered(first, first + words - 1, self.last_word_at + on_channel, self.word);
         let start = free_at.max(complete);
+        self.note_wait(free_at, start);
         let made_room_for = first + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
         // The last word enters when the commands before it have made room.
@@ -316,6 +364,14 @@ impl InputFifo {
         self.words_left = end;
         self.free_at = Some(start + span * count);
         self.busy += span * count;
+    }
+
+    /// Notes that the controller waited for commands, if it did.
+    #[inline]
+    fn note_wait(&mut self, from: Time, to: Time) {
+        if to > from {
+            self.last_wait = (from, to);
+        }
     }
 
     /// Returns the time at which the next `words` words have all entered; `None` while the time depends on a blocking
@@ -357,6 +413,10 @@ impl InputFifo {
     /// Starts a complete command when the controller is free. Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
+        // The words of a copy command arrive behind those of its selection; that is no wait for commands of the region.
+        if command.span.is_some() {
+            self.note_wait(free_at, start);
+        }
         let made_room_for = self.words_left + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count: 1, words_each: 0, step: Span::ZERO });
         self.words_left += u64::from(command.words);
@@ -365,8 +425,23 @@ impl InputFifo {
             watched.left.add(start, command.words);
         }
         self.free_at = command.span.map(|span| start + span);
-        if let Some(span) = command.span {
-            self.busy += span;
+        match command.span {
+            Some(span) => self.busy += span,
+            None => {
+                let before = self.last_block;
+                // A copy command that came late was preceded by the selection of its region at most.
+                let (idle_from, idle_to) = self.last_wait;
+                let is_late = idle_from >= before.resumed_at && free_at.0.saturating_sub(idle_to.0) <= SELECTION.0;
+                let finished_at = if is_late { idle_from.min(free_at) } else { free_at };
+                self.last_block = Block {
+                    begun_at: before.resumed_at,
+                    finished_at,
+                    start,
+                    executed: Span(self.busy.0 - before.busy.0),
+                    busy: self.busy,
+                    resumed_at: before.resumed_at,
+                };
+            }
         }
         command.span.is_none().then_some(start)
     }

@@ -66,7 +66,7 @@ mod simd;
 
 pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane};
 pub use bit_serial::BitSerial;
-pub use board::{Renderer, RendererEvent, RendererOutput, RendererStats};
+pub use board::{DrawnRegion, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
     Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphereCommand, PhongTriangleCommand,
     PhongTriangleEncoder, SPECULAR_SQUARINGS, SelectRegion, Shade, SphereBody, SphereCommand, StoreBacking,

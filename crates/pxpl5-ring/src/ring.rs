@@ -34,6 +34,8 @@ pub struct Ring {
     /// True if the ring moves every word of a message by an event of its own.
     word_by_word: bool,
     stats: RingStats,
+    /// Time for which each port received, overhead and stalls included.
+    receiving: Vec<Span>,
     refusals: Refusals,
 }
 
@@ -94,6 +96,7 @@ impl Ring {
             watched: false,
             word_by_word: false,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
+            receiving: vec![Span::ZERO; usize::from(n_nodes)],
             refusals: Refusals::default(),
         })
     }
@@ -162,6 +165,13 @@ impl Ring {
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
+    }
+
+    /// Returns the time for which a port has received messages that have ended, overhead and stalls included; zero for a port that the
+    /// ring does not have.
+    #[must_use]
+    pub fn receiving(&self, port: NodeId) -> Span {
+        self.receiving.get(usize::from(port.0)).copied().unwrap_or(Span::ZERO)
     }
 
     /// Returns the messages and answers that were refused.
@@ -332,6 +342,7 @@ impl Ring {
             // Account for the message.
             let busy = ended.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
+            self.receiving[usize::from(flight.destination.0)] += busy;
             self.stats.stalled += busy - self.timing.occupancy(flight.words);
             self.stats.messages += 1;
             self.stats.words += u64::from(flight.words);

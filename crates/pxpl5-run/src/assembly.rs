@@ -64,7 +64,7 @@ impl Experiment {
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         // Functions for a viewer who follows the scene's own motion without any delay.
         let surface = machine.record().display().surfaces().first().cloned();
-        let hmd = hmd_before(surface.as_ref());
+        let hmd = hmd_before(surface.as_ref(), self.hmd);
         let eyes = self.pipeline.eyes();
         let period = config.host.view_period_ns * 1_000;
         let cut = self.pipeline.cut(&self.scene, config)?;

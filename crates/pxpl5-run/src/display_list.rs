@@ -76,14 +76,13 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
     }
 }
 
-/// Returns the papers' head-mounted display, adapted to the number of pixels of a surface.
+/// Returns a head-mounted display, adapted to the number of pixels of a surface.
 ///
 /// # Panics
 ///
 /// Never: every display has surfaces of 1 to 65,536 pixels each way.
-pub(crate) fn hmd_before(surface: Option<&Surface>) -> Hmd {
-    let unc = HmdConfig::unc();
-    let config = surface.map_or(unc, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..unc });
+pub(crate) fn hmd_before(surface: Option<&Surface>, hmd: HmdConfig) -> Hmd {
+    let config = surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd });
     Hmd::new(config).expect("a surface has pixels")
 }
 

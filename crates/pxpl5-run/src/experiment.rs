@@ -13,7 +13,7 @@ use crate::rehearsal::DryRun;
 use crate::sums::{FinalResults, ObserverFactory};
 use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
-use pxpl5_scene::Scene;
+use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -70,6 +70,8 @@ pub struct Experiment {
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
+    pub(crate) results_from: Option<PeriodNumber>,
+    pub(crate) hmd: HmdConfig,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
     pub(crate) rehearsed: Option<Arc<DryRun>>,
@@ -112,6 +114,8 @@ impl Experiment {
             level: Level::Transaction,
             head: None,
             on_demand: false,
+            results_from: None,
+            hmd: HmdConfig::unc(),
             estimates: None,
             sums: None,
             rehearsed: None,
@@ -235,6 +239,7 @@ impl Experiment {
             record,
             head,
             notes,
+            hmd: self.hmd,
             arrivals: &record.observation().arrivals,
             pictures: &[],
             next: None,
@@ -249,6 +254,34 @@ impl Experiment {
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
+    }
+
+    /// Sets the optics of the head-mounted display and the distance of the viewer's eyes. The number of pixels is that of the machine's
+    /// display.
+    #[must_use]
+    pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
+        self.hmd = *hmd.config();
+        self
+    }
+
+    /// Returns the head-mounted display. Its pictures have the size of the papers' display; a run takes the size of the machine's.
+    #[must_use]
+    pub const fn hmd(&self) -> &HmdConfig {
+        &self.hmd
+    }
+
+    /// Begins the result window at a period of the first display, or later where start-up takes longer. Runs of different pipelines are
+    /// evaluated over the same periods in this way, to within one interval between due pictures.
+    #[must_use]
+    pub const fn results_from(mut self, period: PeriodNumber) -> Self {
+        self.results_from = Some(period);
+        self
+    }
+
+    /// Returns the same experiment on another machine.
+    #[must_use]
+    pub fn with_machine(self, config: MachineConfig) -> Self {
+        Self { config, ..self }
     }
 
     /// Replaces the scene.
@@ -304,6 +337,10 @@ impl Experiment {
         }
         if self.on_demand {
             hash.setting("on_demand", true);
+        }
+        if self.hmd != HmdConfig::unc() {
+            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, .. } = self.hmd;
+            hash.setting("hmd", format!("{eye_separation_m} {horizontal_fov_deg} {near_m} {far_m}"));
         }
         hash
     }

@@ -76,6 +76,14 @@ impl ResultWindow {
         Self { first_period: PeriodNumber(first), last_period, steady_from }
     }
 
+    /// Returns the window without the whole intervals between due pictures that begin before a period; `None` if nothing is left.
+    pub(crate) fn not_before(self, from: Option<PeriodNumber>, every: Option<u64>) -> Option<Self> {
+        let every = every.unwrap_or(1).max(1);
+        let later = from.map_or(0, |from| from.0.saturating_sub(self.first_period.0).div_ceil(every) * every);
+        let first_period = PeriodNumber(self.first_period.0 + later);
+        (first_period <= self.last_period).then_some(Self { first_period, ..self })
+    }
+
     /// Returns true if a period lies in the window.
     #[must_use]
     pub fn holds(&self, period: PeriodNumber) -> bool {
@@ -103,4 +111,24 @@ fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: 
     let first = start + (anchor - start) % every;
     let failed = (first..end).step_by(every as usize).find(|due| ends.best(*due, every) != Some(PictureResult::Shown));
     failed.unwrap_or(first + steady.saturating_sub(first).div_ceil(every) * every)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window(first: u64, last: u64) -> ResultWindow {
+        let [first_period, last_period] = [first, last].map(PeriodNumber);
+        ResultWindow { first_period, last_period, steady_from: None }
+    }
+
+    #[test]
+    fn a_window_that_begins_later_keeps_whole_intervals_between_due_pictures() {
+        let from = |period| Some(PeriodNumber(period));
+        assert_eq!(window(9, 99).not_before(from(20), Some(3)), Some(window(21, 99)), "9 + 4 x 3");
+        assert_eq!(window(9, 99).not_before(from(20), None), Some(window(20, 99)));
+        assert_eq!(window(30, 99).not_before(from(20), Some(3)), Some(window(30, 99)), "start-up took longer");
+        assert_eq!(window(9, 99).not_before(from(100), Some(1)), None);
+        assert_eq!(window(9, 99).not_before(None, Some(3)), Some(window(9, 99)));
+    }
 }

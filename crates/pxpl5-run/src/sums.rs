@@ -6,6 +6,7 @@ use crate::pipeline::{PictureTimes, Pipeline};
 use crate::result_window::ResultWindow;
 use pxpl5_display::Aim;
 use pxpl5_machine::{Arrival, Record};
+use pxpl5_scene::HmdConfig;
 use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::fmt::Debug;
@@ -25,6 +26,8 @@ pub struct FinalResults<'a> {
     pub record: &'a Record,
     /// Views of the tracked head that are kept, or `None` without a head.
     pub head: Option<&'a Arc<HeadViews>>,
+    /// Optics of the head-mounted display.
+    pub hmd: HmdConfig,
     /// Requested updates of display memories that are kept.
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.

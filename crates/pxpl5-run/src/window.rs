@@ -109,7 +109,8 @@ impl Window {
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
-        let window = Some(ResultWindow::begun(self.tally.ends(), every, known, experiment.end()));
+        let window = ResultWindow::begun(self.tally.ends(), every, known, experiment.end());
+        let window = window.not_before(experiment.results_from, every);
         self.take(&FinalResults { arrivals, pictures, next, until, samples, window, ..all });
         self.taken_to = Some(settled_to);
         Some(begin)
@@ -150,6 +151,7 @@ impl Window {
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
+        let window = window.and_then(|window| window.not_before(experiment.results_from, every));
         self.take(&FinalResults { arrivals, pictures: &pictures, samples, window, ..all });
         Closed { tally: self.tally, window, said: self.sum.map(|sum| sum.said()), pictures }
     }

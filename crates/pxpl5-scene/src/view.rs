@@ -115,7 +115,7 @@ impl Hmd {
 
     /// Returns the numbers of the display, all within their ranges.
     #[must_use]
-    pub fn config(&self) -> &HmdConfig {
+    pub const fn config(&self) -> &HmdConfig {
         &self.config
     }
 

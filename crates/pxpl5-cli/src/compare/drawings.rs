@@ -47,7 +47,7 @@ fn over_latency(comparison: &Comparison) -> String {
         comparison,
         "Error over latency",
         "mean from head to light, ms",
-        "mean error, px (95 % of the seeds' means)",
+        "mean error, px (interval of the seeds' means; hollow: pictures not shown)",
     );
     points(comparison, &axes, |row| row.head_to_light_ms.mean)
 }
@@ -57,7 +57,7 @@ fn over_prediction(comparison: &Comparison) -> String {
         comparison,
         "Error over prediction interval",
         "mean from the newest measurement to the instant drawn for, ms",
-        "mean error, px (95 % of the seeds' means)",
+        "mean error, px (interval of the seeds' means; hollow: pictures not shown)",
     );
     points(comparison, &axes, |row| row.prediction_interval_ms.mean)
 }
@@ -67,7 +67,12 @@ fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&Comparison
     let placed = judged(comparison).filter(|row| across(row).is_finite());
     let points = placed.map(|row| {
         let error = &row.error.mean_px;
-        MarkedPoint { name: row.pipeline.clone(), at: (across(row), error.mean), interval: (error.low, error.high) }
+        MarkedPoint {
+            name: if row.shows_all() { row.pipeline.clone() } else { format!("{} (not all shown)", row.pipeline) },
+            at: (across(row), error.mean),
+            interval: (error.low, error.high),
+            is_hollow: !row.shows_all(),
+        }
     });
     point_chart(axes, &points.collect::<Vec<_>>())
 }

@@ -7,23 +7,26 @@ mod table;
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
-use crate::numbers::whole;
+use crate::numbers::{confidence, whole};
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal;
-use pxpl5::compare::{CompareQuery, LEAST_SEEDS, edge_pictures};
+use pxpl5::compare::{CONFIDENCE, CompareQuery, ComparisonRow, LEAST_SEEDS, edge_pictures, usual_rows};
 use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
-  pxpl5 compare --head pan:200 --scene mig --tracker fastrak
+  pxpl5 compare --head synthetic --scene mig --tracker fastrak
   pxpl5 compare --head head.csv --predict none --out out/compare
   pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
-  pxpl5 compare --fields 60 --seeds 1 --no-limits
+  pxpl5 compare --fields 60 --seeds 1
+  pxpl5 compare --all --limits --confidence 0.99
   pxpl5 compare --only slats,vdrt,jitp-scanline-racing --head pan:200
 
 Every pipeline gets the same settings, a run for each seed. A head of `synthetic` moves otherwise in every one of them. Pipelines have the
@@ -31,16 +34,25 @@ values of their papers; to run one of them alone, with its own keys and pictures
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Rows to run; all rows if none is named.
+    /// Rows to run; default: one or two of each family of pipelines.
     #[arg(long, value_name = "ROW,...", value_delimiter = ',')]
     only: Vec<String>,
+    /// Run all rows.
+    #[arg(long, conflicts_with = "only")]
+    all: bool,
     /// Number of seeds of tracker, host and synthetic motion, from --seed on. Each pipeline runs once for each seed.
     /// The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
-    /// Do not search for the largest number of triangles that each pipeline can draw in time.
-    #[arg(long, alias = "no-triangles")]
+    /// Also search for the largest number of triangles that each pipeline can draw in time, which takes longer than all runs.
+    #[arg(long, conflicts_with = "no_limits")]
+    limits: bool,
+    /// Do not search for it, which is the default.
+    #[arg(long, alias = "no-triangles", hide = true)]
     no_limits: bool,
+    /// Confidence of all intervals, between 0 and 1.
+    #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
+    confidence: f64,
     /// Write into this folder: comparison.json, rows.csv, errors.csv, the drawings (error over time, its
     /// distribution, against latency and against prediction interval), gallery.html with the picture of every
     /// pipeline, and the pictures of a vertical edge.
@@ -85,12 +97,27 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
-    let query = CompareQuery { shared, only: args.only, seeds, limits: !args.no_limits, pictures: folder.is_some() };
+    let only = if args.all || !args.only.is_empty() { args.only } else { usual_rows(shared.registry()) };
+    let (limits, pictures) = (args.limits, folder.is_some());
+    let query = CompareQuery { shared, only, seeds, limits, pictures, confidence: args.confidence };
     admit(args.budget, &query, args.quiet)?;
     let bar = terminal::progress(0, "runs", args.quiet);
-    let comparison = query.run(|done, of| {
+    let rows = AtomicU64::new(0);
+    let begun = Instant::now();
+    let all = query.plans()?.len() as u64;
+    let finished = |done, of| {
         bar.set_length(of);
         bar.set_position(done);
+    };
+    let comparison = query.run_with(finished, |row| {
+        let done = rows.fetch_add(1, Ordering::Relaxed) + 1;
+        let line = ended(row, [done, all], begun.elapsed().as_secs_f64());
+        // A terminal has the bar; a log has a line for each row.
+        if bar.is_hidden() && !args.quiet {
+            terminal::print_error(&line);
+        } else {
+            bar.suspend(|| terminal::print_error(if args.quiet { "" } else { &line }));
+        }
     });
     bar.finish_and_clear();
     let comparison = comparison?;
@@ -110,6 +137,18 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => Ok(()),
         (false, false) => terminal::print(&table::text(&comparison)),
     }
+}
+
+/// Returns the line that tells of a row whose runs have ended.
+fn ended(row: &ComparisonRow, [done, all]: [u64; 2], seconds: f64) -> String {
+    let left = seconds / done as f64 * all.saturating_sub(done) as f64;
+    let error = row.error.mean_px.mean;
+    let error = if error.is_finite() { format!("error {error:.2} px") } else { "no error".to_owned() };
+    let shown = row
+        .not_shown
+        .filter(|missed| *missed > 0)
+        .map_or_else(String::new, |missed| format!(", {missed} of {} pictures not shown", row.due.unwrap_or_default()));
+    format!("pxpl5: row {done} of {all}, {}: {error}{shown}; about {left:.0} s to go\n", row.pipeline)
 }
 
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {

@@ -14,7 +14,7 @@ const COLUMNS: [(&str, &str, usize); 14] = [
     ("updates", "Hz", 8),
     ("not shown", "", 12),
     ("error", "px", 8),
-    ("95 %", "px", 14),
+    ("interval", "px", 14),
     ("50 %", "px", 7),
     ("90 %", "px", 7),
     ("99 %", "px", 8),
@@ -30,14 +30,16 @@ const NAME: usize = 24;
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
     let _ = writeln!(text, "\n{}", header());
-    comparison.pipelines.iter().for_each(|row| text.push_str(&line(row)));
+    comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
+    text.push_str(&best(comparison));
     text.push_str(&causes(comparison));
     text.push_str(
         "\nto light: from the head's pose to the light of the picture's middle; turn: the same of an orientation alone, which a display with\n\
          faces looks up at scan-out; predicts: from the newest measurement to the instant that a picture is drawn for; updates: new pictures a\n\
-         second, of frameless rendering passes over all blocks of the screen (docs/results.md); 95 %: where the mean lies, by the seeds; n:\n\
+         second, of frameless rendering passes over all blocks of the screen (docs/results.md); interval: where the mean lies, by the seeds; n:\n\
          judged pixels; best with: the predictor\n\
-         with the least error of the first seed; - : nothing to judge.\n",
+         with the least error of the first seed; - : nothing to judge; ! : pictures that were due were not shown, so the\n\
+         error is of the others; + : evaluated from a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }
@@ -62,7 +64,29 @@ fn header() -> String {
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
 }
 
-fn line(row: &ComparisonRow) -> String {
+/// Returns the name of a row with its marks.
+fn name(comparison: &Comparison, row: &ComparisonRow) -> String {
+    let missing = if row.shows_all() { "" } else { "!" };
+    let late = if comparison.starts_late(row) { "+" } else { "" };
+    format!("{}{missing}{late}", row.pipeline)
+}
+
+/// Returns the sentence that names the row with the least error.
+fn best(comparison: &Comparison) -> String {
+    let Some(best) = comparison.best() else {
+        return "\nNo row showed every picture that was due.\n".to_owned();
+    };
+    format!(
+        "\nLeast error of the rows that showed every picture: {}, {} px ({:.0} % interval {}); all over the fields from {} on.\n",
+        best.pipeline,
+        number(best.error.mean_px.mean, 2),
+        comparison.confidence * 100.0,
+        interval(&best.error.mean_px),
+        comparison.evaluated_from,
+    )
+}
+
+fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
     // A failed row shows its reason instead of numbers.
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
@@ -87,7 +111,7 @@ fn line(row: &ComparisonRow) -> String {
         row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
     ];
     let cells: String = COLUMNS.iter().zip(values).map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
-    format!("{:<NAME$}{cells}\n", row.pipeline)
+    format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 
 /// Returns the table of the error by cause.

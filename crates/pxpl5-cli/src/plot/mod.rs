@@ -5,11 +5,12 @@ mod formats;
 mod question;
 
 use crate::error::CliError;
-use crate::numbers::{are, count_of};
+use crate::numbers::{are, confidence, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
 use crate::terminal::{print, print_error, warn};
 use formats::Format;
+use pxpl5::compare::CONFIDENCE;
 use pxpl5::results::csv_table;
 use pxpl5::views::charts::AxisScale;
 use question::{Group, Question};
@@ -47,6 +48,9 @@ pub(crate) struct PlotArgs {
     /// Use only rows with this value; may be repeated.
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
+    /// Confidence of the intervals, between 0 and 1. The rows of a comparison have the confidence with which they were made.
+    #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
+    confidence: f64,
     /// File of the figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -176,7 +180,14 @@ impl PlotArgs {
             by.push("pipeline".to_owned());
         }
         let only = self.only.clone();
-        Question { x: self.x.clone(), y: self.y.clone(), by, band: self.band.clone(), only }
+        Question {
+            x: self.x.clone(),
+            y: self.y.clone(),
+            by,
+            band: self.band.clone(),
+            only,
+            confidence: self.confidence,
+        }
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Question {
     pub(super) band: Vec<String>,
     /// Filters as pairs of a column and the text of its value.
     pub(super) only: Vec<(String, String)>,
+    /// Confidence of intervals, between 0 and 1.
+    pub(super) confidence: f64,
 }
 
 /// The rows of one point of one curve.
@@ -94,7 +96,7 @@ impl Question {
             return Ok(self.of_row(by, x, rows[0], missing));
         }
         self.check_others(results, rows)?;
-        let of_all = MeanInterval::of(&numbers);
+        let of_all = MeanInterval::of(&numbers, self.confidence);
         let sd = if numbers.len() < 2 { f64::NAN } else { Statistics::of(numbers.iter().copied()).sd };
         let interval = (of_all.low, of_all.high);
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval })

@@ -31,6 +31,26 @@ impl ComparedPipeline {
     }
 }
 
+/// Pipelines that stand for their family where not all rows are run.
+const USUAL: [&str; 7] =
+    ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
+
+/// Returns the names of the rows that a comparison of a few rows has: one or two for each family of pipelines.
+///
+/// Of a family without a pipeline in [`USUAL`], such as one of another crate, the first pipeline is taken. Rows that are variants of a
+/// pipeline are always among them.
+#[must_use]
+pub fn usual_rows(registry: &Registry) -> Vec<String> {
+    let entries = registry.pipelines();
+    let is_usual = |name: &str| {
+        let Some(entry) = entries.iter().find(|entry| entry.name == name) else { return true };
+        let mut family = entries.iter().filter(|other| other.compared && other.family == entry.family);
+        let first = family.clone().next().map(|first| first.name);
+        USUAL.contains(&name) || (!family.any(|other| USUAL.contains(&other.name)) && first == Some(name))
+    };
+    compared_pipelines(registry).into_iter().map(|contender| contender.name).filter(|name| is_usual(name)).collect()
+}
+
 /// Returns a row for every compared pipeline of the registry, in its order. The variants of Slats (touched regions,
 /// raster offset, reference) follow Slats.
 pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {

@@ -17,8 +17,9 @@ pub use crate::head_names::{
     MOTIONS, MotionError, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by,
     walk,
 };
+pub use contender::usual_rows;
 pub use gallery::LastPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
-pub use row::{CauseShare, ComparisonRow, ErrorSpread, MeanInterval, PredictorMean};
+pub use row::{CONFIDENCE, CauseShare, ComparisonRow, ErrorSpread, MeanInterval, PredictorMean};

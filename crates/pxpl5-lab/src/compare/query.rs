@@ -3,7 +3,7 @@
 use super::contender::{ComparedPipeline, compared_pipelines};
 use super::predictors::predictor_means;
 use super::row::ComparisonRow;
-use super::trial::Trial;
+use super::trial::{Trial, common_window_from};
 use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
@@ -11,6 +11,7 @@ use parameters::nearest;
 use pxpl5_measure::Showing;
 use pxpl5_run::{Goal, Pixels, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
+use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,6 +20,9 @@ use thiserror::Error;
 /// Maximum number of fields of a compared run: a little over an hour. A comparison keeps all observations of a run,
 /// because its errors are evaluated in several ways.
 const MOST_FIELDS: u64 = 250_000;
+
+/// Number of periods by which the first evaluated periods of rows may differ: intervals between due pictures.
+const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
 pub const LEAST_SEEDS: usize = 5;
@@ -37,6 +41,8 @@ pub struct CompareQuery {
     pub limits: bool,
     /// True to compute the pixels of the first seed's runs, for [`ComparisonRow::picture`].
     pub pictures: bool,
+    /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
+    pub confidence: f64,
 }
 
 /// Error of a comparison that cannot be run.
@@ -94,6 +100,11 @@ pub struct Comparison {
     pub fields: u64,
     /// Seeds of the runs. Every row ran once for each seed.
     pub seeds: Vec<u64>,
+    /// Confidence of all intervals, between 0 and 1.
+    pub confidence: f64,
+    /// First period of the display in which rows are evaluated, to within one interval between due pictures. Rows that start up later
+    /// begin later ([`ComparisonRow::window`]).
+    pub evaluated_from: PeriodNumber,
     /// Rows in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
@@ -109,33 +120,40 @@ impl CompareQuery {
     ///
     /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
+        self.run_with(finished, |_| {})
+    }
+
+    /// Runs every row with every seed, as [`CompareQuery::run`] does. `ended` is called with each row as soon as its runs have ended.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn run_with(
+        &self,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, CompareError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
-        let runs = self.runs(&compared_pipelines);
         let searches = if self.limits { compared_pipelines.len() } else { 0 };
-        let all = (runs.len() + searches) as u64;
+        let all = (compared_pipelines.len() * self.seeds.len() + searches) as u64;
         let done = AtomicU64::new(0);
         let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
-        // All runs of all rows and seeds execute in parallel. Searches for limits follow, one for each row.
-        let trials = parallel::map(&runs, |(contender, seed)| {
-            let trial = self.trial(&compared_pipelines[*contender], *seed, &scene);
-            step();
-            trial
-        });
-        // Group the trials by row again, in the order in which they were created.
-        let mut of_row = trials.into_iter();
-        let rows: Vec<_> = compared_pipelines
-            .iter()
-            .map(|contender| (contender, of_row.by_ref().take(self.seeds.len()).collect::<Vec<_>>()))
-            .collect();
-        let pipelines = parallel::map(&rows, |(contender, trials)| {
-            let row = self.row(contender, trials, &scene);
+        // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
+        let pipelines = parallel::map(&compared_pipelines, |contender| {
+            let trials = parallel::map(&self.seeds, |seed| {
+                let trial = self.trial(contender, *seed, &scene);
+                step();
+                trial
+            });
+            let row = self.row(contender, &trials, &scene)?;
             if self.limits {
                 step();
             }
-            row
+            ended(&row);
+            Ok::<_, CompareError>(row)
         });
         Ok(Comparison {
             schema: "pxpl5-comparison/2",
@@ -146,6 +164,8 @@ impl CompareQuery {
             head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
             fields: any.fields,
             seeds: self.seeds.clone(),
+            confidence: self.confidence,
+            evaluated_from: common_window_from(any.fields),
             pipelines: pipelines.into_iter().collect::<Result<_, _>>()?,
         })
     }
@@ -192,13 +212,6 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Returns pairs of a row's index and a seed, in the order of rows.
-    fn runs(&self, compared_pipelines: &[ComparedPipeline]) -> Vec<(usize, u64)> {
-        (0..compared_pipelines.len())
-            .flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed)))
-            .collect()
-    }
-
     fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
@@ -216,7 +229,7 @@ impl CompareQuery {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         // Failed runs are left out, and their first error is reported below.
         let ran: Vec<&Trial> = trials.iter().flatten().collect();
-        let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran);
+        let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, self.confidence);
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
@@ -266,6 +279,22 @@ fn definition(plan: &Plan) -> String {
 }
 
 impl Comparison {
+    /// Returns the row with the least mean error. A row with pictures that were due and not shown never is the best, nor is the reference,
+    /// nor a row that was not evaluated over the same periods as the others.
+    #[must_use]
+    pub fn best(&self) -> Option<&ComparisonRow> {
+        let judged =
+            self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
+        let timed = judged.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
+        timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
+    }
+
+    /// Returns true if a row was evaluated from a later period on than the others.
+    #[must_use]
+    pub fn starts_late(&self, row: &ComparisonRow) -> bool {
+        row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
+    }
+
     /// Returns the row with a name.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {

@@ -5,11 +5,11 @@ use super::gallery::LastPicture;
 use super::trial::Trial;
 use distrs::StudentsT;
 use pxpl5_measure::{Budget, FieldMisregistration, Percentiles, Showing};
-use pxpl5_run::{Cause, Pipeline, Statistics};
+use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics};
 use serde::Serialize;
 use tracking::predict::PredictorKind;
 
-/// A mean over seeds with its 95 % confidence interval (Student's t over the means of the seeds).
+/// A mean over seeds with its confidence interval (Student's t over the means of the seeds).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeanInterval {
     /// Mean of the seeds' means. NaN if there are no seeds.
@@ -22,20 +22,38 @@ pub struct MeanInterval {
     pub n: usize,
 }
 
+/// Default confidence of an interval.
+pub const CONFIDENCE: f64 = 0.95;
+
 impl MeanInterval {
-    /// Computes mean and interval of one number for each seed.
+    /// Computes mean and interval of one positive number for each seed, at a confidence between 0 and 1.
+    ///
+    /// The interval of a positive quantity is that of its logarithm (delta method): from `mean / f` to `mean * f` with
+    /// `f = exp(t sd / (sqrt(n) mean))`. So the lower end stays positive. Numbers that are not all positive have the symmetric interval
+    /// of [`MeanInterval::of_signed`].
     #[must_use]
-    pub fn of(values: &[f64]) -> Self {
+    pub fn of(values: &[f64], confidence: f64) -> Self {
+        let symmetric = Self::of_signed(values, confidence);
+        if !values.iter().all(|value| *value > 0.0) {
+            return symmetric;
+        }
+        let factor = ((symmetric.high - symmetric.mean) / symmetric.mean).exp();
+        Self { low: symmetric.mean / factor, high: symmetric.mean * factor, ..symmetric }
+    }
+
+    /// Computes mean and symmetric interval of one number for each seed, which may be negative.
+    #[must_use]
+    pub fn of_signed(values: &[f64], confidence: f64) -> Self {
         let statistics = Statistics::of(values.iter().copied());
         let n = values.len();
-        let half = if n < 2 { f64::NAN } else { quantile_of_t(n - 1) * statistics.sd / (n as f64).sqrt() };
+        let half = if n < 2 { f64::NAN } else { quantile_of_t(n - 1, confidence) * statistics.sd / (n as f64).sqrt() };
         Self { mean: statistics.mean, low: statistics.mean - half, high: statistics.mean + half, n }
     }
 }
 
-/// Returns the 97.5th percentile of Student's t distribution.
-fn quantile_of_t(freedom: usize) -> f64 {
-    StudentsT::ppf(0.975, freedom as f64)
+/// Returns the quantile of Student's t distribution that a two-sided interval of some confidence needs.
+fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
+    StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
 }
 
 /// Errors in pixels over the runs of all seeds.
@@ -107,6 +125,8 @@ pub struct ComparisonRow {
     pub late_regions: Option<usize>,
     /// Registration error over a grid of pixels and all fields.
     pub error: ErrorSpread,
+    /// Periods of the display over which the first seed was evaluated. `None` for no seed, or a run that was over before.
+    pub window: Option<ResultWindow>,
     /// Contributions of all causes to the mean error. Their sum is the mean error.
     pub causes: Vec<CauseShare>,
     /// Mean error of the first seed with each predictor. Empty for the reference, which no firmware draws.
@@ -131,7 +151,12 @@ pub struct ComparisonRow {
 
 impl ComparisonRow {
     /// Combines the runs of a row. A row without runs has no numbers.
-    pub(super) fn of(contender: &ComparedPipeline, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
+    pub(super) fn of(
+        contender: &ComparedPipeline,
+        pipeline: &dyn Pipeline,
+        trials: &[&Trial],
+        confidence: f64,
+    ) -> Self {
         let is_reference = contender.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
@@ -150,12 +175,13 @@ impl ComparisonRow {
             turn_to_light_ms: pooled(trials, |trial| &trial.turn_to_light_ms),
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
-            updates_hz: MeanInterval::of(&hz),
+            updates_hz: MeanInterval::of(&hz, confidence),
             due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
             not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
             late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
-            error: ErrorSpread::of(trials),
-            causes: causes(trials),
+            error: ErrorSpread::of(trials, confidence),
+            window: trials.first().and_then(|trial| trial.window),
+            causes: causes(trials, confidence),
             predictors: Vec::new(),
             triangles_possible: None,
             triangles_definition: String::new(),
@@ -171,6 +197,12 @@ impl ComparisonRow {
     pub fn best_predictor(&self) -> Option<PredictorMean> {
         let judged = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
         judged.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
+    }
+
+    /// Returns true if every picture that was due was shown in time.
+    #[must_use]
+    pub fn shows_all(&self) -> bool {
+        self.not_shown.unwrap_or(0) == 0
     }
 
     /// Returns true if at least one pixel of the row was evaluated.
@@ -196,7 +228,7 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
 }
 
 /// Returns the contributions of all causes. The interaction of the causes comes last.
-fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
+fn causes(trials: &[&Trial], confidence: f64) -> Vec<CauseShare> {
     let split: Vec<_> = trials.iter().filter_map(|trial| trial.causes.as_ref()).collect();
     if split.is_empty() {
         return Vec::new();
@@ -209,25 +241,25 @@ fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
             .filter(|part| part.cause == cause)
             .map(|part| part.px)
             .collect();
-        CauseShare { cause: Some(cause), px: MeanInterval::of(&px) }
+        CauseShare { cause: Some(cause), px: MeanInterval::of_signed(&px, confidence) }
     };
     let mut shares: Vec<CauseShare> = Cause::ALL.into_iter().map(of_cause).collect();
     // The part of the error that no single cause explains comes last.
     let interaction: Vec<f64> = split.iter().map(|causes| causes.interaction_px).collect();
-    shares.push(CauseShare { cause: None, px: MeanInterval::of(&interaction) });
+    shares.push(CauseShare { cause: None, px: MeanInterval::of_signed(&interaction, confidence) });
     shares
 }
 
 impl ErrorSpread {
-    fn of(trials: &[&Trial]) -> Self {
+    fn of(trials: &[&Trial], confidence: f64) -> Self {
         let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
         let px: Vec<f64> = judged.iter().map(|trial| trial.errors.pixels.mean).collect();
         let deg: Vec<f64> = judged.iter().map(|trial| trial.errors.degrees.mean).collect();
         let mut all: Vec<f64> = judged.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
         Self {
-            mean_px: MeanInterval::of(&px),
-            mean_deg: MeanInterval::of(&deg),
+            mean_px: MeanInterval::of(&px, confidence),
+            mean_deg: MeanInterval::of(&deg, confidence),
             pixels: Percentiles::of(all.iter().copied()),
             n: judged.iter().map(|trial| trial.errors.judged).sum(),
             distribution_px: hundredths(&all),
@@ -251,17 +283,40 @@ mod tests {
     #[test]
     fn the_interval_of_five_means_is_that_of_the_tables() {
         // Mean 3, sample sd sqrt(2.5); t with 4 degrees of freedom is 2.776 (any table).
-        let interval = MeanInterval::of(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        let interval = MeanInterval::of_signed(&[1.0, 2.0, 3.0, 4.0, 5.0], CONFIDENCE);
         let half = 2.776_445 * 2.5f64.sqrt() / 5f64.sqrt();
         assert_eq!((interval.mean, interval.n), (3.0, 5));
         assert!((interval.high - 3.0 - half).abs() < 1e-5 && (3.0 - interval.low - half).abs() < 1e-5, "{interval:?}");
     }
 
     #[test]
+    fn the_interval_of_a_positive_quantity_stays_positive() {
+        // Mean 10, sample sd sqrt(100 + 100 + 0) / sqrt(2) = 10; t with 2 degrees of freedom is 4.303: the symmetric interval is
+        // 10 - 24.8 to 10 + 24.8.
+        let values = [0.1, 10.0, 19.9];
+        let factor = (4.302_653 * 9.9 / 3f64.sqrt() / 10.0f64).exp();
+        let interval = MeanInterval::of(&values, CONFIDENCE);
+        assert!(
+            (interval.low - 10.0 / factor).abs() < 1e-4 && (interval.high - 10.0 * factor).abs() < 1e-3,
+            "{interval:?}"
+        );
+        assert!(MeanInterval::of_signed(&values, CONFIDENCE).low < 0.0);
+    }
+
+    #[test]
+    fn a_higher_confidence_gives_a_wider_interval() {
+        // t with 4 degrees of freedom: 2.776 at 95 %, 4.604 at 99 % (any table).
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let [usual, wide] = [0.95, 0.99].map(|confidence| MeanInterval::of_signed(&values, confidence));
+        let ratio = (wide.high - wide.mean) / (usual.high - usual.mean);
+        assert!((ratio - 4.604_095 / 2.776_445).abs() < 1e-4, "{ratio}");
+    }
+
+    #[test]
     fn one_seed_has_a_mean_and_no_interval() {
-        let interval = MeanInterval::of(&[7.0]);
+        let interval = MeanInterval::of(&[7.0], CONFIDENCE);
         assert!(interval.mean == 7.0 && interval.low.is_nan() && interval.high.is_nan());
-        assert!(MeanInterval::of(&[]).mean.is_nan());
+        assert!(MeanInterval::of(&[], CONFIDENCE).mean.is_nan());
     }
 
     #[test]

@@ -4,9 +4,9 @@ use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
-use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels};
+use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
-use pxpl5_wire::ViewNumber;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -22,6 +22,7 @@ pub(super) struct Trial {
     pub(super) causes: Option<ErrorCauses>,
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
+    pub(super) window: Option<ResultWindow>,
     /// Number of complete pictures in the window of evaluation.
     pub(super) shown: usize,
     pub(super) late_regions: usize,
@@ -45,10 +46,17 @@ impl ComparedPipeline {
 
     /// Runs the row once. An error is returned as its message.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
-        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels);
+        let from = common_window_from(plan.fields);
+        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
         let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
+}
+
+/// Returns the first period in which the rows of a comparison are evaluated: after a quarter of the run, so that all rows are evaluated over
+/// the same periods although some start up later than others.
+pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
+    PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
 
 impl Trial {
@@ -68,6 +76,7 @@ impl Trial {
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
+            window: report.window,
             shown: report.pictures,
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),

@@ -1,6 +1,7 @@
 //! The keys of an experiment file, with their explanations.
 
 use super::head::COLUMNS;
+use super::hmd;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use parameters::nearest;
 use pxpl5_machine::MachineConfig;
@@ -89,6 +90,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    all.extend(hmd::NUMBERS.iter().map(|(path, about, ..)| common(path, about)));
     // One key for each column of a recording.
     all.extend(Columns::fields().map(|field| FileKey {
         path: format!("{COLUMNS}{field}"),

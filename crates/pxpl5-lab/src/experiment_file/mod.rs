@@ -26,6 +26,7 @@
 
 mod error;
 mod head;
+mod hmd;
 mod keys;
 mod motion;
 mod plan;

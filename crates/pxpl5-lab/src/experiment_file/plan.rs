@@ -1,6 +1,7 @@
 //! The checked plan of one experiment.
 
 use super::head::HeadChoice;
+use super::hmd;
 use super::read::{plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, Setting};
@@ -14,7 +15,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
     PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
-use pxpl5_scene::Scene;
+use pxpl5_scene::{Hmd, Scene};
 use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
@@ -84,6 +85,8 @@ pub struct Plan {
     pub level: Level,
     /// Head with its tracker. `None` for the scene's own motion without tracking delay.
     pub head: Option<HeadChoice>,
+    /// Head-mounted display before the viewer's eyes.
+    pub hmd: Hmd,
     /// Pixels that are computed; default only pixels that are read.
     pub pixels: Pixels,
     /// Quantities for tables and rows.
@@ -118,6 +121,7 @@ impl ExperimentFile {
             seed,
             level: self.level(entry, head.is_some())?,
             limit: (entry.limit)(&given),
+            hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
             head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
@@ -348,6 +352,7 @@ impl Plan {
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
             .with_estimates(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
             .observed_by(Some(HeadSum::begin))
+            .with_hmd(self.hmd)
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

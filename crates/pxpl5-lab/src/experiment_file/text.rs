@@ -1,5 +1,6 @@
 //! Conversion of a plan to the text of a complete experiment file.
 
+use super::hmd;
 use super::motion::PathChoice;
 use super::plan::{PIXELS, Plan};
 use super::scene::is_file;
@@ -40,6 +41,7 @@ impl Plan {
             head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
             head.parameters().iter().for_each(|parameter| all.parameter(&parameter.path, parameter, &[]));
         }
+        hmd::settings(&self.hmd).for_each(|(path, value)| all.put(path, value));
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
         all.put("pixels", name(&PIXELS, &self.pixels));

@@ -12,8 +12,10 @@
 //! therefore also tries sizes below the result of the bisection, and the smallest miss counts. [`most`] states the
 //! guarantee.
 
+mod over;
 mod search;
 
+pub use over::{OverError, OverLimit, OverQuery, STEPS, Values};
 pub use search::{Hints, Limit, about, most};
 
 use crate::experiment_file::{FileError, Plan, SceneChoice};
@@ -117,7 +119,21 @@ impl LimitQuery {
     /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on it. A scene that does
     /// not fit into a board's memory, or is never shown, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
-        let limit = most(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        self.search_with(|_| {})
+    }
+
+    /// Searches; `progress` hears how many sizes were tried.
+    ///
+    /// # Errors
+    ///
+    /// As [`search`](Self::search).
+    pub fn search_with(&self, mut progress: impl FnMut(u64)) -> Result<Limit, ExperimentError> {
+        let mut tried = 0;
+        let limit = most(self.ceiling(), &self.hints(), |triangles| {
+            tried += 1;
+            progress(tried);
+            self.reached(triangles)
+        })?;
         // A limit of zero may mean that the goal cannot be evaluated.
         if limit.triangles == 0 {
             self.check_rate()?;

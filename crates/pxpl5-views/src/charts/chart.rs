@@ -46,6 +46,8 @@ pub enum SeriesStyle {
     Band,
     /// A mark at each point, without a line. Each interval is a vertical line.
     Points,
+    /// As [`SeriesStyle::Points`], with hollow marks.
+    HollowPoints,
 }
 
 /// A series of points with a name.
@@ -246,14 +248,14 @@ fn draw_series<'a>(
                 let upper = bounded.iter().rev().map(|(x, (_, high))| (*x, *high));
                 plane.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), look.colour.mix(0.2))])?;
             }
-            SeriesStyle::Points | SeriesStyle::Band => {
+            SeriesStyle::Points | SeriesStyle::HollowPoints | SeriesStyle::Band => {
                 let upright = |(x, (low, high)): &(f64, (f64, f64))| vec![(*x, *low), (*x, *high)];
                 plane.draw_series(bounded.iter().map(|point| PathElement::new(upright(point), look.stroke())))?;
             }
             SeriesStyle::Line => {}
         }
         let places = || run.iter().map(|point| point.at);
-        if series.look != SeriesStyle::Points {
+        if matches!(series.look, SeriesStyle::Line | SeriesStyle::Band) {
             match look.dashes() {
                 None => plane.draw_series(LineSeries::new(places(), look.stroke()))?,
                 Some((on, off)) => {
@@ -263,6 +265,7 @@ fn draw_series<'a>(
             };
         }
         if series.look != SeriesStyle::Line {
+            let look = look.hollow(series.look == SeriesStyle::HollowPoints);
             places().try_for_each(|at| look.mark(plane.plotting_area(), at))?;
         }
     }
@@ -273,8 +276,8 @@ fn draw_series<'a>(
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;
-    if series.look == SeriesStyle::Points {
-        look.mark(area, (x + em, y))?;
+    if matches!(series.look, SeriesStyle::Points | SeriesStyle::HollowPoints) {
+        look.hollow(series.look == SeriesStyle::HollowPoints).mark(area, (x + em, y))?;
     } else {
         let ends = vec![(x, y), (x + 2 * em, y)];
         match look.dashes() {

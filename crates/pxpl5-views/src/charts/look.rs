@@ -20,13 +20,20 @@ pub(super) struct Look {
     pub(super) colour: RGBColor,
     /// Height of text in units of the drawing.
     pub(super) em: u32,
+    /// True for a series whose mark is a wide ring.
+    is_hollow: bool,
 }
 
 impl Look {
     /// Returns the look of the series with an index, from 0.
     pub(super) fn of(place: usize, em: u32) -> Self {
         let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
-        Self { place, colour: RGBColor(red, green, blue), em }
+        Self { place, colour: RGBColor(red, green, blue), em, is_hollow: false }
+    }
+
+    /// Returns the look with a hollow mark.
+    pub(super) const fn hollow(self, is_hollow: bool) -> Self {
+        Self { is_hollow, ..self }
     }
 
     pub(super) fn stroke(&self) -> ShapeStyle {
@@ -50,6 +57,9 @@ impl Look {
         C: CoordTranslate,
     {
         let size = self.em * 3 / 8;
+        if self.is_hollow {
+            return area.draw(&Circle::new(at, size * 3 / 2, self.stroke()));
+        }
         match self.place % 4 {
             0 => area.draw(&Circle::new(at, size, self.colour.filled())),
             1 => area.draw(&TriangleMarker::new(at, size, self.colour.filled())),

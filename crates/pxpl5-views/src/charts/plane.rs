@@ -21,6 +21,8 @@ pub struct MarkedPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the interval. NaN stands for no interval.
     pub interval: (f64, f64),
+    /// True for a hollow mark: a value that cannot be compared with the others.
+    pub is_hollow: bool,
 }
 
 /// Returns an SVG chart of curves with a legend. Both axes begin at 0.
@@ -54,7 +56,11 @@ fn of_curve(curve: &Curve) -> ChartSeries {
 
 fn of_point(point: &MarkedPoint) -> ChartSeries {
     let points = vec![ChartPoint { at: point.at, interval: point.interval }];
-    ChartSeries { name: point.name.clone(), points, look: SeriesStyle::Points }
+    ChartSeries {
+        name: point.name.clone(),
+        points,
+        look: if point.is_hollow { SeriesStyle::HollowPoints } else { SeriesStyle::Points },
+    }
 }
 
 #[cfg(test)]
@@ -115,8 +121,12 @@ mod tests {
 
     #[test]
     fn a_point_without_numbers_is_in_the_legend_alone() {
-        let point =
-            |name: &str, up: f64| MarkedPoint { name: name.to_owned(), at: (10.0, up), interval: (up - 1.0, up + 1.0) };
+        let point = |name: &str, up: f64| MarkedPoint {
+            name: name.to_owned(),
+            at: (10.0, up),
+            interval: (up - 1.0, up + 1.0),
+            is_hollow: false,
+        };
         let shown = point_chart(&axes(), &[point("shown", 3.0)]);
         assert_eq!(attributes(&shown, "circle", "cy").len(), 2, "the point and its sample");
         let heavy = point_chart(&axes(), &[point("too heavy", f64::NAN)]);

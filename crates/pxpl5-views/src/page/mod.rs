@@ -11,6 +11,7 @@ mod run;
 mod section;
 mod summary;
 mod tables;
+mod utilisation;
 mod values;
 
 pub use html::html;

@@ -3,6 +3,7 @@
 use super::configuration::{configuration, speed};
 use super::latency::{due, head_to_light, latency};
 use super::run::{PagePicture, PageRun};
+use super::utilisation::utilisation;
 use super::values::{heading, wide};
 use crate::markup::Element;
 use base64::Engine;
@@ -30,7 +31,7 @@ fn seen(run: &PageRun) -> Element {
 
 fn timed(run: &PageRun) -> Element {
     let section = Element::new("section").children(due(&run.report)).children(latency(&run.report, &run.latencies_ms));
-    section.children(head_to_light(&run.report["head"]))
+    section.children(utilisation(&run.report)).children(head_to_light(&run.report["head"]))
 }
 
 fn told(run: &PageRun) -> Element {

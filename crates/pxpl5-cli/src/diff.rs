@@ -1,0 +1,167 @@
+//! The command `pxpl5 diff`, which compares two results.
+
+use crate::error::CliError;
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::lab::diff::{Changed, Differences, diff};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Compare two results: settings, numbers and pictures.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 diff out/slats out/rendering-control
+  pxpl5 diff out/a/report.json out/b/report.json --least 5 --json
+
+A result is a folder that `pxpl5 run --out` wrote, or its report.json. Pictures are compared where both folders have them.")]
+pub(crate) struct DiffArgs {
+    /// First result.
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// Second result.
+    #[arg(value_name = "B")]
+    b: PathBuf,
+    /// Leave out numbers that differ by less than this, in percent.
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0)]
+    least: f64,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Difference of two pictures of the same name.
+#[derive(Debug)]
+struct PictureDifference {
+    /// Name of the files.
+    name: String,
+    /// Width and height of both pictures.
+    sizes: [[u32; 2]; 2],
+    /// Number of pixels that differ. `None` if the pictures differ in size.
+    differing: Option<u64>,
+    /// Largest difference of a colour, 0 to 255. `None` if the pictures differ in size.
+    largest: Option<u8>,
+}
+
+/// Runs the command `pxpl5 diff`.
+///
+/// # Errors
+///
+/// Fails when a result cannot be read.
+pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
+    let mut found = diff(&report(&args.a)?, &report(&args.b)?);
+    found.results.retain(|changed| changed.percent().is_none_or(|percent| percent.abs() >= args.least));
+    let pictures = pictures(&args.a, &args.b)?;
+    if args.json {
+        let mut object = serde_json::to_value(&found).map_err(CliError::failure)?;
+        object["schema"] = Value::from("pxpl5-diff/1");
+        let picture = |PictureDifference { name, sizes, differing, largest }: &PictureDifference| json!({"name": name, "sizes": sizes, "differing": differing, "largest": largest});
+        object["pictures"] = pictures.iter().map(picture).collect();
+        return print(&format!("{object:#}\n"));
+    }
+    print(&text(&found, &pictures))
+}
+
+/// Reads the report of a result.
+fn report(path: &Path) -> Result<Value, CliError> {
+    let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
+    let name = file.display();
+    let bytes =
+        std::fs::read(&file).map_err(|error| CliError::failure(format!("{name}: {error}; expected a report.json")))?;
+    let report: Value =
+        serde_json::from_slice(&bytes).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
+    match report["schema"].as_str() {
+        Some(schema) if schema.starts_with("pxpl5-report/") => Ok(report),
+        found => Err(CliError::failure(format!(
+            "{name}: expected the schema pxpl5-report, found {}; `pxpl5 run --out` writes it",
+            found.unwrap_or("none")
+        ))),
+    }
+}
+
+/// Compares the pictures that both folders have.
+fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
+    let [of_a, of_b] = [a, b].map(names);
+    let names: Vec<String> = of_a.intersection(&of_b).cloned().collect();
+    names.into_iter().map(|name| picture(a, b, name)).collect()
+}
+
+/// Returns the names of a folder's pictures, in order; none of a file.
+fn names(folder: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names.filter(|name| name.ends_with(".png")).collect()
+}
+
+fn picture(a: &Path, b: &Path, name: String) -> Result<PictureDifference, CliError> {
+    let open = |folder: &Path| {
+        let path = folder.join(&name);
+        let picture = image::open(&path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
+        Ok::<_, CliError>(picture.into_rgb8())
+    };
+    let (a, b) = (open(a)?, open(b)?);
+    let sizes = [&a, &b].map(|picture| [picture.width(), picture.height()]);
+    let same_size = sizes[0] == sizes[1];
+    let pairs = || a.pixels().zip(b.pixels());
+    let distance = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| {
+        a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or_default()
+    };
+    let differing = same_size.then(|| pairs().filter(|pair| distance(*pair) > 0).count() as u64);
+    let largest = same_size.then(|| pairs().map(distance).max().unwrap_or_default());
+    Ok(PictureDifference { name, sizes, differing, largest })
+}
+
+fn text(found: &Differences, pictures: &[PictureDifference]) -> String {
+    let mut text = String::new();
+    let trace = if found.same_trace { "The traces are equal." } else { "The traces differ." };
+    let _ = writeln!(text, "{trace} {} results are equal, {} differ.", found.equal, found.results.len());
+    for (title, changes) in [("Settings", &found.settings), ("Results", &found.results)] {
+        if !changes.is_empty() {
+            let _ = writeln!(text, "\n{title}");
+            changes.iter().for_each(|changed| text.push_str(&line(changed)));
+        }
+    }
+    if !pictures.is_empty() {
+        let _ = writeln!(text, "\nPictures");
+    }
+    for PictureDifference { name, sizes: [a, b], differing, largest } in pictures {
+        let all = u64::from(a[0]) * u64::from(a[1]);
+        let _ = match differing {
+            Some(0) => writeln!(text, "{name}: equal"),
+            Some(count) => writeln!(
+                text,
+                "{name}: {count} of {all} pixels differ, by at most {} of 255",
+                largest.unwrap_or_default()
+            ),
+            None => writeln!(text, "{name}: {} x {} and {} x {} pixels", a[0], a[1], b[0], b[1]),
+        };
+    }
+    text
+}
+
+/// A line for a value. Long texts are cut.
+fn line(changed: &Changed) -> String {
+    let cell = |value: &Option<Value>| match value {
+        None | Some(Value::Null) => "-".to_owned(),
+        Some(Value::String(text)) => text.chars().take(40).collect(),
+        Some(Value::Number(number)) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
+        Some(other) => other.to_string(),
+    };
+    let percent = changed.percent().map_or_else(String::new, |percent| format!("  {percent:+.1} %"));
+    format!("{:<44} {:>16} {:>16}{percent}\n", changed.key, cell(&changed.a), cell(&changed.b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_told_with_its_change_and_a_missing_one_as_a_dash() {
+        let changed =
+            Changed { key: "latency_ms.mean".to_owned(), a: Some(Value::from(20.0)), b: Some(Value::from(25.0)) };
+        assert!(line(&changed).ends_with("20.0000          25.0000  +25.0 %\n"), "{}", line(&changed));
+        let missing = Changed { b: None, ..changed };
+        assert!(line(&missing).ends_with("20.0000                -\n"), "{}", line(&missing));
+    }
+}

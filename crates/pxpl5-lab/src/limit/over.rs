@@ -1,0 +1,324 @@
+//! Limits over any setting: from which value on, or up to which, an experiment reaches a goal.
+
+use super::is_reached;
+use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use parameters::Value;
+use pxpl5_machine::PRESETS;
+use pxpl5_measure::{CriticalPath, Utilisation, summary};
+use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
+use pxpl5_scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The values of a setting that are tried: steps from one value to another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Values {
+    /// The least value.
+    pub from: f64,
+    /// The distance from one value to the next: 1 for whole numbers.
+    pub step: f64,
+    /// How many values there are, at least 2.
+    pub count: u64,
+}
+
+impl Values {
+    /// Returns the whole numbers of a range; `None` of fewer than two.
+    #[must_use]
+    pub fn whole(from: u64, to: u64) -> Option<Self> {
+        (to > from).then(|| Self { from: from as f64, step: 1.0, count: to - from + 1 })
+    }
+
+    /// Returns real numbers in [`STEPS`] equal steps; `None` of an empty range.
+    #[must_use]
+    pub fn real(from: f64, to: f64) -> Option<Self> {
+        let step = (to - from) / STEPS as f64;
+        (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
+    }
+
+    /// Returns a value by its number, from 0.
+    #[must_use]
+    pub fn value(&self, number: u64) -> f64 {
+        self.from + self.step * number as f64
+    }
+
+    /// Returns the greatest value.
+    #[must_use]
+    pub fn last(&self) -> f64 {
+        self.value(self.count - 1)
+    }
+
+    fn is_whole(&self) -> bool {
+        self.step == 1.0 && self.from.fract() == 0.0
+    }
+
+    /// Writes a value as a setting: whole numbers without a point.
+    #[must_use]
+    pub fn text(&self, value: f64) -> String {
+        if self.is_whole() { format!("{value:.0}") } else { format!("{value:?}") }
+    }
+}
+
+/// Steps between the ends of a range of real numbers.
+pub const STEPS: u64 = 64;
+
+/// Which values of a setting reach a goal.
+#[derive(Clone, Debug)]
+pub struct OverQuery {
+    /// The experiment with all other settings.
+    pub file: ExperimentFile,
+    /// The setting, such as `machine.n_gps`.
+    pub key: String,
+    /// The values that are tried.
+    pub values: Values,
+    /// What must hold.
+    pub goal: Goal,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OverLimit {
+    /// The least value that reaches the goal, if a smaller one was tried and misses it.
+    pub least: Option<f64>,
+    /// The greatest value that reaches the goal, if a greater one was tried and misses it.
+    pub most: Option<f64>,
+    /// Whether any value that was tried reaches it.
+    pub reached: bool,
+    /// Values that were tried, in order, each with whether it reaches the goal.
+    pub tried: Vec<(f64, bool)>,
+    /// The value next to the limit that misses the goal, or the best one where all miss.
+    pub missed_at: Option<f64>,
+    /// What limits the experiment at that value, in words.
+    pub because: Option<String>,
+}
+
+/// What came of one value.
+struct Trial {
+    reached: bool,
+    /// How near the goal is; more is better.
+    score: f64,
+    because: Option<String>,
+}
+
+impl OverQuery {
+    /// Returns the values that are tried where nobody says which.
+    ///
+    /// The numbers of boards go up to those of the largest preset. Other parameters go through the range that the sources allow.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::Missing`] for a setting without such a range.
+    pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, FileError> {
+        let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
+            let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
+            presets.map(|config| boards(&config) as u64).max().unwrap_or(1)
+        };
+        let found = match key {
+            "machine.n_gps" => Values::whole(1, largest(|config| config.n_gps)),
+            "machine.n_renderers" => Values::whole(1, largest(|config| config.n_renderers)),
+            _ => {
+                let path = key.strip_prefix("machine.").unwrap_or(key);
+                let parameter = plan.parameters().into_iter().find(|parameter| parameter.path == path);
+                parameter.and_then(|parameter| match parameter.info.range {
+                    (Value::Whole(low), Value::Whole(high)) => Values::whole(low, high),
+                    (low, high) => Values::real(low.real(), high.real()),
+                })
+            }
+        };
+        found.ok_or(FileError::Missing { key: "--from and --to", how: "the values of this key that are tried" })
+    }
+
+    /// Searches; `progress` hears of every value that was tried.
+    ///
+    /// The ends of the range and three values between them are tried first. From one that reaches the goal the search goes by halves to
+    /// either side. So a limit is exact where the goal is reached on one side of it only.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] and [`ExperimentError`] where no value at all can be run.
+    pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, OverError> {
+        let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
+        let last = self.values.count - 1;
+        for number in [0, last, last / 2, last / 4, last - last / 4] {
+            search.reaches(number);
+            progress(search.trials.len() as u64);
+        }
+        let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
+        let Some(inside) = reached else { return search.none() };
+        // Towards smaller values, then towards greater ones.
+        let misses = |search: &Search<'_>, down: bool| {
+            let of = search.trials.iter().filter(|(_, trial)| !trial.reached).map(|(number, _)| *number);
+            if down { of.filter(|number| *number < inside).max() } else { of.filter(|number| *number > inside).min() }
+        };
+        let mut ends = [None, None];
+        for (end, down) in ends.iter_mut().zip([true, false]) {
+            let Some(mut miss) = misses(&search, down) else { continue };
+            let mut hit = inside;
+            while miss.abs_diff(hit) > 1 {
+                let middle = u64::midpoint(miss, hit);
+                if search.reaches(middle) {
+                    hit = middle
+                } else {
+                    miss = middle
+                }
+                progress(search.trials.len() as u64);
+            }
+            *end = Some((hit, miss));
+        }
+        let [least, most] = ends;
+        let miss = least.or(most).map(|(_, miss)| miss);
+        Ok(OverLimit {
+            least: least.map(|(hit, _)| self.values.value(hit)),
+            most: most.map(|(hit, _)| self.values.value(hit)),
+            reached: true,
+            missed_at: miss.map(|miss| self.values.value(miss)),
+            because: miss.and_then(|miss| search.trials[&miss].because.clone()),
+            tried: search.tried(),
+        })
+    }
+
+    fn plan(&self, value: f64) -> Result<Plan, FileError> {
+        let mut file = self.file.clone();
+        file.set_text(&format!("{}={}", self.key, self.values.text(value)), "--over")?;
+        file.resolve()
+    }
+}
+
+/// Why no value of a setting could be run.
+#[derive(Debug, thiserror::Error)]
+pub enum OverError {
+    /// The settings are wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The machine cannot run.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+}
+
+/// Values that were tried.
+struct Search<'a> {
+    query: &'a OverQuery,
+    trials: BTreeMap<u64, Trial>,
+    /// The last error of a value that could not be run.
+    refused: Option<OverError>,
+    /// The scene that was loaded last, with its choice.
+    scene: Option<(crate::SceneChoice, Arc<Scene>)>,
+}
+
+impl Search<'_> {
+    /// Returns true if a value reaches the goal; one that cannot be run does not.
+    fn reaches(&mut self, number: u64) -> bool {
+        if let Some(trial) = self.trials.get(&number) {
+            return trial.reached;
+        }
+        let trial = self.run(self.query.values.value(number)).unwrap_or_else(|error| {
+            let because = Some(error.to_string());
+            self.refused = Some(error);
+            Trial { reached: false, score: f64::NEG_INFINITY, because }
+        });
+        let reached = trial.reached;
+        self.trials.insert(number, trial);
+        reached
+    }
+
+    fn run(&mut self, value: f64) -> Result<Trial, OverError> {
+        let plan = self.query.plan(value)?;
+        let scene = self.load(&plan)?;
+        let goal = self.query.goal;
+        if plan.level == Level::Analytic {
+            let summary = plan.run(scene)?.summary;
+            let score = score(goal, &summary);
+            return Ok(Trial { reached: is_reached(goal, &summary), score, because: None });
+        }
+        let experiment: Experiment = plan.experiment(scene).pixels(Pixels::Off).keep(Keep::Statistics);
+        let (outcome, is_whole) = match experiment.run() {
+            Ok(outcome) => (outcome, true),
+            Err(ExperimentError::TooShort { partial, .. } | ExperimentError::Run { partial, .. }) => (*partial, false),
+            Err(error) => return Err(error.into()),
+        };
+        let summary = summary(&outcome);
+        let reached = is_whole && is_reached(goal, &summary);
+        Ok(Trial { reached, score: score(goal, &summary), because: (!reached).then(|| because(&outcome)).flatten() })
+    }
+
+    fn load(&mut self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+        if let Some((_, scene)) = self.scene.as_ref().filter(|(choice, _)| *choice == plan.scene) {
+            return Ok(Arc::clone(scene));
+        }
+        let scene = plan.load_scene()?;
+        self.scene = Some((plan.scene.clone(), Arc::clone(&scene)));
+        Ok(scene)
+    }
+
+    fn tried(&self) -> Vec<(f64, bool)> {
+        self.trials.iter().map(|(number, trial)| (self.query.values.value(*number), trial.reached)).collect()
+    }
+
+    /// All values miss the goal: the best of them tells why.
+    fn none(mut self) -> Result<OverLimit, OverError> {
+        let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
+        if let Some(error) = self.refused.take().filter(|_| is_refused) {
+            return Err(error);
+        }
+        let best = self.trials.iter().max_by(|a, b| a.1.score.total_cmp(&b.1.score));
+        let (missed_at, because) =
+            best.map(|(number, trial)| (self.query.values.value(*number), trial.because.clone())).unzip();
+        Ok(OverLimit {
+            least: None,
+            most: None,
+            reached: false,
+            tried: self.tried(),
+            missed_at,
+            because: because.flatten(),
+        })
+    }
+}
+
+/// How near a goal is, in units of its own: more is better.
+fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
+    let score = match goal {
+        Goal::NoMissedRetrace => summary.due.map(|due| -(due.not_shown() as f64)),
+        Goal::RateHz(_) => summary.updates_hz,
+        Goal::LatencyFields(_) => Some(-summary.latency_fields().mean),
+    };
+    score.filter(|score| score.is_finite()).unwrap_or(f64::MIN)
+}
+
+/// A board that is busier than this limits the machine by itself.
+const FULL: f64 = 0.95;
+
+/// What limits a run: the board that is always busy, or else what the latency waits for.
+fn because(outcome: &Outcome) -> Option<String> {
+    let utilisation = Utilisation::of(outcome.record())?;
+    let kinds = [
+        ("renderer", utilisation.renderers.executing),
+        ("GP", utilisation.gps.busy),
+        ("port", utilisation.ports.busy),
+        ("channel", utilisation.ring.channels),
+    ];
+    let full = kinds.into_iter().find(|(_, shares)| shares.max >= FULL);
+    if let Some((board, shares)) = full {
+        let idle = if shares.idle > 0 { format!(", {} are idle", shares.idle) } else { String::new() };
+        return Some(format!("{board} {} is {:.0} % busy{idle}", shares.busiest, shares.max * 100.0));
+    }
+    Some(format!("limited by {}", CriticalPath::of(outcome)?.limited_by))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_are_written_without_a_point() {
+        let values = Values::whole(2, 50).expect("a range");
+        assert_eq!((values.count, values.text(values.value(3))), (49, "5".to_owned()));
+        assert_eq!(Values::whole(5, 5), None);
+    }
+
+    #[test]
+    fn real_numbers_go_in_equal_steps_to_the_end() {
+        let values = Values::real(0.0, 16.0).expect("a range");
+        assert_eq!((values.value(1), values.last(), values.text(0.25)), (0.25, 16.0, "0.25".to_owned()));
+        assert_eq!(Values::real(1.0, 1.0), None);
+    }
+}

@@ -1,0 +1,115 @@
+//! What 10 % more of each resource of a machine would bring.
+
+use crate::levels::summarise;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, ExperimentError, Keep, Level, Pixels, Registry, Summary};
+use serde::Serialize;
+
+/// What a change of the machine brings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WhatIf {
+    /// The resource of which there is more.
+    pub resource: &'static str,
+    /// The setting that was changed, such as `machine.n_gps`.
+    pub key: &'static str,
+    /// The value of the setting as it is, and as it was tried.
+    pub from: u64,
+    /// The value that was tried: 10 % better, and at least by one step.
+    pub to: u64,
+    /// Mean latency without and with the change, milliseconds; nothing where no picture was complete.
+    pub latency_ms: [Option<f64>; 2],
+    /// Whole new pictures a second without and with the change; nothing where fewer than two were shown.
+    pub updates_hz: [Option<f64>; 2],
+    /// The level of modelling that tells it: `analytic`, or that of the run.
+    pub level: &'static str,
+}
+
+/// A resource with the setting that gives more of it.
+struct Knob {
+    resource: &'static str,
+    key: &'static str,
+    /// Whether a smaller value is more of it: a time.
+    is_time: bool,
+}
+
+const KNOBS: [Knob; 6] = [
+    Knob { resource: "graphics processors", key: "machine.n_gps", is_time: false },
+    Knob { resource: "speed of a graphics processor", key: "machine.gp.triangle_ns", is_time: true },
+    Knob { resource: "renderers", key: "machine.n_renderers", is_time: false },
+    Knob { resource: "speed of a renderer", key: "machine.renderer.clock_hz", is_time: false },
+    Knob { resource: "channels of the ring", key: "machine.ring.channels", is_time: false },
+    Knob { resource: "speed of a channel and of a port", key: "machine.ring.word_ns", is_time: true },
+];
+
+impl Knob {
+    /// Returns the setting's value on a machine.
+    fn value(&self, config: &MachineConfig) -> Option<u64> {
+        let path = self.key.strip_prefix("machine.")?;
+        match path {
+            "n_gps" => Some(config.n_gps as u64),
+            "n_renderers" => Some(config.n_renderers as u64),
+            _ => config.parameters().into_iter().find(|parameter| parameter.path == path)?.value.whole(),
+        }
+    }
+
+    /// Returns the machine with 10 % more of the resource; `None` where the machine cannot have it.
+    fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
+        let from = self.value(config)?;
+        let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };
+        let mut more = config.clone();
+        more.set(self.key.strip_prefix("machine.")?, to).ok()?;
+        (to != from && more.check().is_ok()).then_some((from, to, more))
+    }
+}
+
+/// Returns what 10 % more of each resource would bring.
+///
+/// The pipeline's closed form tells it where it holds: without a head that is tracked. Else the experiment runs again for each resource,
+/// without pixels.
+///
+/// # Errors
+///
+/// As [`Experiment::run`], of the experiment as it is. A changed one that cannot run has no numbers.
+pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatIf>, ExperimentError> {
+    let by_form = experiment.clone().level(Level::Analytic).pixels(Pixels::Off);
+    let is_analytic = experiment.tracked_head().is_none();
+    let form = is_analytic.then(|| summarise(registry, &by_form).ok()).flatten();
+    let (base, tried) = match form {
+        Some(summary) => (summary, by_form),
+        None => {
+            let run = experiment.clone().pixels(Pixels::Off).keep(Keep::Statistics);
+            (summarise(registry, &run)?, run)
+        }
+    };
+    let level = tried.modelling_level().name();
+    let of = |summary: Option<&Summary>| {
+        let latency = summary.map(|summary| summary.latency_ms().mean).filter(|mean| mean.is_finite());
+        (latency, summary.and_then(|summary| summary.updates_hz))
+    };
+    let tell = |knob: &Knob| {
+        let (from, to, machine) = knob.more(tried.config())?;
+        let changed = summarise(registry, &tried.clone().with_machine(machine)).ok();
+        let ((before_ms, before_hz), (after_ms, after_hz)) = (of(Some(&base)), of(changed.as_ref()));
+        let [latency_ms, updates_hz] = [[before_ms, after_ms], [before_hz, after_hz]];
+        Some(WhatIf { resource: knob.resource, key: knob.key, from, to, latency_ms, updates_hz, level })
+    };
+    Ok(KNOBS.iter().filter_map(tell).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_is_a_tenth_and_at_least_one_step() {
+        let config = MachineConfig::preset("large").expect("a preset");
+        let tried: Vec<(u64, u64)> =
+            KNOBS.iter().filter_map(|knob| knob.more(&config)).map(|(from, to, _)| (from, to)).collect();
+        assert!(tried.contains(&(50, 55)), "graphics processors: {tried:?}");
+        assert!(tried.contains(&(20, 22)), "renderers: {tried:?}");
+        assert!(tried.contains(&(8, 9)), "channels: {tried:?}");
+        assert!(tried.contains(&(50, 46)), "a word of 50 ns takes 50 / 1.1 = 45.5 ns, rounded up: {tried:?}");
+        assert!(tried.contains(&(21_700, 19_728)), "21,700 / 1.1 = 19,727.3 ns, rounded up: {tried:?}");
+        assert_eq!(tried.len(), KNOBS.len());
+    }
+}

@@ -1,0 +1,203 @@
+//! What a latency waits for: the chain of waits that ends with a picture on the screen.
+//!
+//! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. It goes from each piece of work to the
+//! piece whose end let it begin. Each instant of the latency belongs to one resource, so the shares add up to 1.
+
+use crate::resource::Resource;
+use crate::trail::{Step, Trail};
+use pxpl5_machine::Board;
+use pxpl5_run::{Outcome, PictureTimes};
+use pxpl5_sim::Span;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The share of a latency that waits for one resource.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathPart {
+    /// The resource.
+    pub resource: Resource,
+    /// Share of the latency, 0 to 1.
+    pub share: f64,
+    /// Mean over the followed pictures, milliseconds.
+    pub ms: f64,
+    /// The board, or the port's board, that takes most of the part; nothing where the records name none.
+    pub board: Option<String>,
+    /// Share of the part that this board takes, 0 to 1.
+    pub share_of_board: Option<f64>,
+}
+
+/// The chain of waits of the last pictures of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CriticalPath {
+    /// Pictures that were followed: the last complete ones of the window, at most [`PICTURES_FOLLOWED`].
+    pub pictures: usize,
+    /// Their mean latency from the start of TRANSFORM to the screen, milliseconds.
+    pub latency_ms: f64,
+    /// The resources that the pictures waited for, the largest share first.
+    pub parts: Vec<PathPart>,
+    /// The first of them in a sentence.
+    pub limited_by: String,
+    /// The chain of the last picture, from the screen back.
+    pub chain: Vec<String>,
+}
+
+/// Pictures that are followed at most: of these every run, however long, still has all records.
+pub const PICTURES_FOLLOWED: usize = 24;
+
+/// Links of a chain that are told.
+const LINKS_TOLD: usize = 16;
+
+impl CriticalPath {
+    /// Returns the chain of waits of a run's last complete pictures; `None` where no picture was complete, or where none was drawn for it.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Option<Self> {
+        let all: Vec<&PictureTimes> = outcome.complete_pictures().collect();
+        let pictures = &all[all.len().saturating_sub(PICTURES_FOLLOWED)..];
+        let earliest = pictures.iter().map(|times| times.transform_at).min()?;
+        let trail = Trail::of(outcome.record(), earliest);
+        let chains: Vec<Vec<Step>> = pictures.iter().map(|times| trail.follow(times)).collect();
+        Self::of_chains(&chains)
+    }
+
+    fn of_chains(chains: &[Vec<Step>]) -> Option<Self> {
+        let pictures = chains.len();
+        let total: Span = chains.iter().flatten().map(Step::span).sum();
+        if pictures == 0 || total == Span::ZERO {
+            return None;
+        }
+        let mut parts: Vec<PathPart> =
+            Resource::ALL.into_iter().filter_map(|resource| part(resource, chains, total)).collect();
+        parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let limited_by = parts.first().map(ToString::to_string)?;
+        let chain = chains.last().map(|steps| told(steps)).unwrap_or_default();
+        Some(Self { pictures, latency_ms: total.as_ms() / pictures as f64, parts, limited_by, chain })
+    }
+
+    /// Returns the share of the latency that waits for a resource, 0 to 1.
+    #[must_use]
+    pub fn share(&self, resource: Resource) -> f64 {
+        self.parts.iter().find(|part| part.resource == resource).map_or(0.0, |part| part.share)
+    }
+}
+
+/// Sums up the steps of one resource; `None` where there is none.
+fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
+    let of = || chains.iter().flatten().filter(|step| step.resource == resource);
+    let span: Span = of().map(Step::span).sum();
+    if span == Span::ZERO {
+        return None;
+    }
+    let mut boards: BTreeMap<Board, Span> = BTreeMap::new();
+    of().filter_map(|step| Some((step.board?, step.span()))).for_each(|(board, span)| {
+        *boards.entry(board).or_default() += span;
+    });
+    let most = boards.into_iter().max_by_key(|(_, span)| *span);
+    Some(PathPart {
+        resource,
+        share: span.0 as f64 / total.0 as f64,
+        ms: span.as_ms() / chains.len() as f64,
+        board: most.map(|(board, _)| board.to_string()),
+        share_of_board: most.map(|(_, of_board)| of_board.0 as f64 / span.0 as f64),
+    })
+}
+
+/// A board is named alone if it takes at least this share of a part.
+const NAMED_ALONE: f64 = 0.75;
+
+impl fmt::Display for PathPart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {:.0} % of the latency", self.resource.about(), self.share * 100.0)?;
+        // A machine has one display and one ring; their names say nothing.
+        let is_shared = matches!(self.resource, Resource::Ports | Resource::Retrace | Resource::Ring);
+        let is_of_one = !is_shared && self.share_of_board.is_some_and(|share| share >= NAMED_ALONE);
+        match &self.board {
+            Some(board) if is_of_one => {
+                write!(f, " ({:.0} % of that: {board})", self.share_of_board.unwrap_or_default() * 100.0)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Joins steps of one kind that follow each other, and tells the first links.
+fn told(steps: &[Step]) -> Vec<String> {
+    let mut links: Vec<(String, Span, usize)> = Vec::new();
+    let mut last: Option<(Resource, Option<Board>)> = None;
+    for step in steps {
+        let kind = (step.resource, step.board);
+        match links.last_mut().filter(|_| last == Some(kind)) {
+            Some((_, span, count)) => {
+                *span += step.span();
+                *count += 1;
+            }
+            None => links.push((step.what.clone(), step.span(), 1)),
+        }
+        last = Some(kind);
+    }
+    let more = links.len().saturating_sub(LINKS_TOLD);
+    let mut lines: Vec<String> = links.into_iter().take(LINKS_TOLD).map(|link| line(&link)).collect();
+    if more > 0 {
+        lines.push(format!("and {more} links before"));
+    }
+    lines
+}
+
+fn line((what, span, count): &(String, Span, usize)) -> String {
+    let others = if *count > 1 { format!(" and {} before", count - 1) } else { String::new() };
+    format!("{what}{others}: {:.3} ms", span.as_ms())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_sim::Time;
+
+    fn step(resource: Resource, board: Option<Board>, from: u64, to: u64) -> Step {
+        let ms = 1_000_000_000;
+        Step { resource, board, from: Time(from * ms), to: Time(to * ms), what: format!("{resource:?}") }
+    }
+
+    #[test]
+    fn shares_add_up_and_the_largest_limits() {
+        let renderer = Some(Board::Renderer(3));
+        let chain = vec![
+            step(Resource::Retrace, None, 90, 100),
+            step(Resource::Ports, Some(Board::Display(0)), 70, 90),
+            step(Resource::Renderers, renderer, 10, 70),
+            step(Resource::Transform, Some(Board::Gp(4)), 0, 10),
+        ];
+        let path = CriticalPath::of_chains(&[chain]).expect("a picture");
+        let shares: Vec<f64> = path.parts.iter().map(|part| part.share).collect();
+        assert_eq!(shares, [0.6, 0.2, 0.1, 0.1]);
+        assert_eq!(
+            path.limited_by,
+            "execution of commands in the renderers, 60 % of the latency (100 % of that: renderer 3)"
+        );
+        assert!((path.latency_ms - 100.0).abs() < 1e-9);
+        assert_eq!(path.share(Resource::Ring), 0.0);
+    }
+
+    #[test]
+    fn no_board_is_named_where_several_share_the_part() {
+        let half = |number, from, to| step(Resource::Renderers, Some(Board::Renderer(number)), from, to);
+        let path = CriticalPath::of_chains(&[vec![half(0, 50, 100), half(1, 0, 50)]]).expect("a picture");
+        assert_eq!(path.limited_by, "execution of commands in the renderers, 100 % of the latency");
+    }
+
+    #[test]
+    fn links_of_one_kind_are_joined() {
+        let port = Some(Board::Display(0));
+        let chain = vec![
+            step(Resource::Ports, port, 20, 30),
+            step(Resource::Ports, port, 10, 20),
+            step(Resource::Transform, Some(Board::Gp(1)), 0, 10),
+        ];
+        assert_eq!(told(&chain), ["Ports and 1 before: 20.000 ms", "Transform: 10.000 ms"]);
+    }
+
+    #[test]
+    fn nothing_is_said_of_no_picture() {
+        assert_eq!(CriticalPath::of_chains(&[]), None);
+    }
+}

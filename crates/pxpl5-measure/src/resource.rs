@@ -1,0 +1,58 @@
+//! The resources that a picture can wait for.
+
+use serde::Serialize;
+
+/// What a piece of a latency waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resource {
+    /// The display's next retrace, or its beam.
+    Retrace,
+    /// COPY: pixels go into a port of a display.
+    Ports,
+    /// COPY: pixels wait for a channel of the ring.
+    Ring,
+    /// Renderers execute commands.
+    Renderers,
+    /// Renderers move a region to their backing store, or wait for room there.
+    BackingStore,
+    /// EDIT and TRANSFORM on the graphics processors.
+    Transform,
+    /// Messages and tokens between graphics processors and to renderers: their software and their way.
+    Messages,
+    /// SEND on the host.
+    Host,
+    /// Nothing that the records tell.
+    Other,
+}
+
+impl Resource {
+    /// All of them, from the screen back to the host.
+    pub const ALL: [Self; 9] = [
+        Self::Retrace,
+        Self::Ports,
+        Self::Ring,
+        Self::Renderers,
+        Self::BackingStore,
+        Self::Transform,
+        Self::Messages,
+        Self::Host,
+        Self::Other,
+    ];
+
+    /// Returns what the resource does while a picture waits for it.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Retrace => "the wait for the display's retrace",
+            Self::Ports => "COPY through the displays' ports",
+            Self::Ring => "the wait for a channel of the ring",
+            Self::Renderers => "execution of commands in the renderers",
+            Self::BackingStore => "moves to the renderers' backing store",
+            Self::Transform => "EDIT and TRANSFORM on the graphics processors",
+            Self::Messages => "messages and tokens of the graphics processors",
+            Self::Host => "SEND on the host",
+            Self::Other => "what no record tells",
+        }
+    }
+}

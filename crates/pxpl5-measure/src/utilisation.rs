@@ -1,0 +1,230 @@
+//! How busy each board was, over a whole run.
+
+use pxpl5_machine::Record;
+use pxpl5_sim::{Span, Time};
+use serde::Serialize;
+use std::fmt;
+
+/// Shares of the time of a run in which boards were busy, 0 to 1, from switching on to the end of the run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Utilisation {
+    /// The time that the shares are of, milliseconds of simulated time.
+    pub of_ms: f64,
+    /// CPU of the host.
+    pub host: f64,
+    /// The graphics processors, the master included.
+    pub gps: GpUtilisation,
+    /// The renderers.
+    pub renderers: RendererUtilisation,
+    /// The ring.
+    pub ring: RingUtilisation,
+    /// The ports of the displays, in the order of their boards.
+    pub ports: PortUtilisation,
+}
+
+/// Shares of boards of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shares {
+    /// Mean over all boards.
+    pub mean: f64,
+    /// Share of the busiest board.
+    pub max: f64,
+    /// Number of the busiest board, from 0.
+    pub busiest: usize,
+    /// Boards that were busy for less than 1 % of the time.
+    pub idle: usize,
+}
+
+impl Shares {
+    /// Returns the shares of a time in some spans, one for each board; `None` without boards or time.
+    #[must_use]
+    pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
+        let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();
+        let (busiest, max) = shares.iter().copied().enumerate().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        let idle = shares.iter().filter(|share| **share < IDLE).count();
+        (time > Time::ZERO).then_some(Self { mean, max, busiest, idle })
+    }
+}
+
+/// A board that is busy for a smaller share of the time is idle.
+const IDLE: f64 = 0.01;
+
+/// What the CPUs of the graphics processors did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GpUtilisation {
+    /// All that their CPUs did.
+    pub busy: Shares,
+    /// Mean share of work such as EDIT and TRANSFORM.
+    pub work: f64,
+    /// Mean share of the software that receives and sends messages.
+    pub messages: f64,
+    /// Mean share of handing over bins for tokens.
+    pub tokens: f64,
+}
+
+/// What the controllers of the renderers did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RendererUtilisation {
+    /// Execution of commands.
+    pub executing: Shares,
+    /// Mean share in which a copy command held the controller.
+    pub copying: f64,
+    /// Mean share in which the controller waited for commands.
+    pub waiting: f64,
+}
+
+/// What the channels of the ring carried.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RingUtilisation {
+    /// Occupied channels, overhead and stalls included.
+    pub channels: Shares,
+    /// Words of messages a second, without overhead.
+    pub words_per_second: f64,
+    /// Words a second that all channels could carry.
+    pub capacity: f64,
+}
+
+/// How busy the ports of displays were.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PortUtilisation {
+    /// All ports.
+    pub busy: Shares,
+    /// Each port with what is behind it.
+    pub each: Vec<PortShare>,
+}
+
+/// The share of one port.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PortShare {
+    /// What is behind the port: the surface's title, or the display's name with the port's number.
+    pub port: String,
+    /// Share of the time in which messages came in.
+    pub busy: f64,
+}
+
+impl Utilisation {
+    /// Returns the shares of a run that is over; `None` of a machine that has not run.
+    #[must_use]
+    pub fn of(record: &Record) -> Option<Self> {
+        let time = record.elapsed();
+        let (host, gps) = record.processors_used().split_first()?;
+        let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);
+        let renderers = record.renderers();
+        let executing = Shares::of(renderers.iter().map(|board| board.busy_at(time)), time)?;
+        let copying = mean(&mut renderers.iter().map(|board| board.copying_at(time)));
+        let timing = record.ring().timing();
+        let stats = record.ring().stats();
+        let word_s = timing.word().as_ms() / 1e3;
+        Some(Self {
+            of_ms: time.since(Time::ZERO).as_ms(),
+            host: share(host.busy, time),
+            gps: GpUtilisation {
+                busy: Shares::of(gps.iter().map(|gp| gp.busy), time)?,
+                work: mean(&mut gps.iter().map(|gp| gp.work())),
+                messages: mean(&mut gps.iter().map(|gp| gp.messages)),
+                tokens: mean(&mut gps.iter().map(|gp| gp.tokens)),
+            },
+            renderers: RendererUtilisation { executing, copying, waiting: (1.0 - executing.mean - copying).max(0.0) },
+            ring: RingUtilisation {
+                channels: Shares::of(stats.channel_busy.iter().copied(), time)?,
+                words_per_second: stats.words as f64 * 1e3 / time.since(Time::ZERO).as_ms(),
+                capacity: timing.channels as f64 / word_s,
+            },
+            ports: PortUtilisation::of(record, time)?,
+        })
+    }
+}
+
+impl PortUtilisation {
+    fn of(record: &Record, time: Time) -> Option<Self> {
+        let mut each = Vec::new();
+        let mut spans = Vec::new();
+        for (display, ports) in record.displays().iter().zip(&record.ports().displays) {
+            let is_one_each = ports.len() == display.surfaces().len();
+            for (number, port) in ports.iter().enumerate() {
+                let title = display.surfaces().get(number).filter(|_| is_one_each).map(|surface| surface.title);
+                let port_name = title.map_or_else(|| format!("{} port {number}", display.name()), str::to_owned);
+                let span = record.ring().receiving(*port);
+                each.push(PortShare { port: port_name, busy: share(span, time) });
+                spans.push(span);
+            }
+        }
+        Some(Self { busy: Shares::of(spans, time)?, each })
+    }
+}
+
+impl fmt::Display for Utilisation {
+    /// Prints a line for each kind of board.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { gps, renderers, ring, ports, .. } = self;
+        writeln!(
+            f,
+            "Busy GPs: {} (work {}, messages {}, tokens {})",
+            told(&gps.busy, "GP"),
+            percent(gps.work),
+            percent(gps.messages),
+            percent(gps.tokens)
+        )?;
+        writeln!(
+            f,
+            "Busy renderers: {} (copying {}, waiting for commands {})",
+            told(&renderers.executing, "renderer"),
+            percent(renderers.copying),
+            percent(renderers.waiting)
+        )?;
+        writeln!(
+            f,
+            "Busy ring: {} ({:.1} of {:.0} million words a second)",
+            told(&ring.channels, "channel"),
+            ring.words_per_second / 1e6,
+            ring.capacity / 1e6
+        )?;
+        let ports: Vec<String> =
+            ports.each.iter().map(|port| format!("{} {}", port.port, percent(port.busy))).collect();
+        write!(f, "Busy ports: {}; host {}", ports.join(", "), percent(self.host))
+    }
+}
+
+/// Shares as text: mean, the busiest board, and how many are idle.
+fn told(shares: &Shares, board: &str) -> String {
+    let idle = if shares.idle > 0 { format!(", {} idle", shares.idle) } else { String::new() };
+    format!("mean {}, {board} {} {}{idle}", percent(shares.mean), shares.busiest, percent(shares.max))
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+fn share(span: Span, time: Time) -> f64 {
+    (span.0 as f64 / time.0 as f64).min(1.0)
+}
+
+fn mean_share(spans: &mut dyn Iterator<Item = Span>, time: Time) -> f64 {
+    let (count, sum) = spans.fold((0usize, 0.0), |(count, sum), span| (count + 1, sum + share(span, time)));
+    sum / count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_name_the_first_busiest_board_and_count_the_idle_ones() {
+        let spans = [10, 90, 0, 90].map(Span);
+        let shares = Shares::of(spans, Time(100)).expect("four boards");
+        assert_eq!(shares, Shares { mean: 0.475, max: 0.9, busiest: 1, idle: 1 });
+    }
+
+    #[test]
+    fn without_time_or_boards_there_are_no_shares() {
+        assert_eq!(Shares::of([], Time(100)), None);
+        assert_eq!(Shares::of([Span(0)], Time::ZERO), None);
+    }
+
+    /// A message that is counted at its end may reach beyond the end of a run by a few microseconds.
+    #[test]
+    fn no_share_is_above_one() {
+        assert_eq!(share(Span(101), Time(100)), 1.0);
+    }
+}
