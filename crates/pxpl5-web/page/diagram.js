@@ -71,6 +71,8 @@ export class Diagram {
     const [width, height] = [this.place.clientWidth, this.place.clientHeight];
     if (width === 0) return;
     const names = [...this.boards.keys()];
+    // Short names where boards are small.
+    names.forEach((name) => (this.boards.get(name).button.firstChild.textContent = width < 600 ? label(name).replace("Renderer", "Rend.").replace("Frame buffers", "Frames") : label(name)));
     const first = this.boards.get(names[0]).button;
     const inset = [first.offsetWidth / 2 + 4, first.offsetHeight / 2 + 4];
     const [a, b] = [width - 2 * inset[0], height - 2 * inset[1]];
@@ -141,13 +143,12 @@ export class Diagram {
     const onRing = channels?.filter(Boolean) ?? [];
     for (const board of boards) {
       const { button, does } = this.boards.get(board.name);
-      const sends = onRing.some((message) => message.from === board.name);
+      const sends = onRing.find((message) => message.from === board.name);
       const takes = onRing.some((message) => message.to === board.name);
-      let stage = board.works || board.stage === "render" || board.stage === "copy" ? board.stage ?? "note" : "waits";
+      let stage = board.works ? board.stage ?? "note" : "waits";
       if (board.kind === "display") stage = takes ? "copy" : "waits";
-      if (board.name === "host" && sends) stage = "send";
+      if (board.kind === "processor" && sends) stage = cargo(sends);
       if (stage === "sample") stage = "send";
-      if (stage === "waits" && sends && board.kind === "processor") stage = board.stage ?? "note";
       button.className = `block ${board.kind} ${stage}`;
       button.setAttribute("aria-pressed", String(board.name === chosen));
       const word = stage === "waits" ? "waits" : stage === "note" ? "works" : stage.toUpperCase();

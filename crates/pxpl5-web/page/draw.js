@@ -140,6 +140,7 @@ export function drawTimeline(place, svg) {
   const [, , width, height] = drawing.getAttribute("viewBox").split(" ").map(Number);
   drawing.setAttribute("viewBox", `0 ${UNTITLED} ${width} ${height - UNTITLED}`);
   drawing.setAttribute("part", "drawing");
+  drawing.setAttribute("aria-label", "Timeline: a row for each resource, time to the right, a bar for each piece of work at a picture");
   drawing.removeAttribute("width");
   drawing.removeAttribute("height");
 }

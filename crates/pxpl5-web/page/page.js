@@ -250,7 +250,7 @@ function wanted(now) {
   if (stands || now - looked.timeline > TIMELINE_EVERY) {
     looked.timeline = now;
     if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
-    if (shows("latency")) want.latencies = inLab ? 8 : 2;
+    if (shows("latency")) want.latencies = inLab ? 8 : 1;
   }
   return want;
 }
@@ -356,7 +356,7 @@ function draw(seen) {
     }
     if (seen.board !== null) {
       at("board-name").textContent = chosen;
-      at("board").textContent = seen.board;
+      at("board").textContent = humane(seen.board);
     }
     at("pixel").hidden = pixel === null;
     if (pixel) at("pixel").textContent = seen.pixel || "Nothing has been drawn there yet, or there is no such pixel.";
@@ -369,10 +369,17 @@ function draw(seen) {
   if (seen.faces) drawFaces(at("faces"), seen.faces, eyesShown);
   at("beam-legend").hidden = !shows("beam");
   at("wire-legend").hidden = !shows("wire");
-  at("region-legend").hidden = !shows("regions") || !seen.machines.some((one) => one.regions?.length > 0);
+  at("region-legend").hidden = !shows("regions") || !seen.machines.some((one) => one.regions?.some((region) => region.surface < eyesShown));
   if (mode === "lab") drawLink(state);
   if (!running) describe();
   if ((failed || state.over) && running) pause();
+}
+
+/** Numbers of a board's description for reading: 31.3 ms, not 31332.000 us. */
+function humane(text) {
+  return text
+    .replace(/(\d+\.\d{3}) us/g, (_, us) => (Number(us) >= 1000 ? inMs(Number(us) / 1000) : `${Number(us).toFixed(1)} us`))
+    .replace(/\b(\d{4,}) bytes/g, (_, bytes) => `${Number(bytes).toLocaleString("en")} bytes`);
 }
 
 /** Says in words what the pictures show, for those who do not see them: when the run stands, not while it goes on. */
@@ -498,6 +505,7 @@ async function run({ end = Infinity, stop = null } = {}) {
   stepped = false;
   at("go").textContent = "Pause";
   at("go").setAttribute("aria-pressed", "true");
+  at("speed").textContent = "runs";
   let last = performance.now();
   let counted = { at: last, ps: null };
   let isThere = false;
@@ -880,6 +888,7 @@ async function perform(tale, number, isFast) {
   const later = inPs(step.then ?? 0);
   if (!isFast) {
     if (!(await run({ end, stop }))) return false;
+    if (step.thenSlower) slowDown(step.thenSlower);
     return later > 0 ? run({ end: reached + later }) : true;
   }
   if (step.hand) return true;

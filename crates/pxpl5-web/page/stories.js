@@ -9,7 +9,7 @@ const MS = 1e9;
 
 /**
  * Each step has a title and two sentences. It runs `slower` than the machine for `ms` of simulated time, or until something
- * happens (`until`, at most for `ms`; `then` is how much longer), and says `paused`. `show` names what is drawn besides the
+ * happens (`until`, at most for `ms`; then for `then` more, `thenSlower` than the machine), and says `paused`. `show` names what is drawn besides the
  * pictures. A step without a `path` of the head goes on with that of the step before. With `hand` it waits for the visitor.
  */
 export const STORIES = {
@@ -72,25 +72,25 @@ export const STORIES = {
       {
         title: "1. The pose of the head",
         say: "The host reads the tracker and sends the position of the head to the graphics processors. From this moment on the picture is growing old.",
-        until: "pose", ms: 200, slower: 60, then: 0.01, show: ["diagram", "regions", "age"],
+        until: "pose", ms: 200, slower: 60, then: 0.06, thenSlower: 8000, show: ["diagram", "regions", "age"],
         paused: "The host's message is on the ring.",
       },
       {
         title: "2. TRANSFORM",
         say: "Each graphics processor (GP) takes its share of the triangles and works out where they fall on the screen. It sorts them into bins, one for each region of 128 by 128 pixels.",
-        until: "transform", ms: 200, slower: 60, then: 0.05, show: ["diagram", "regions", "age"],
+        until: "transform", ms: 200, slower: 60, then: 0.25, thenSlower: 4000, show: ["diagram", "regions", "age"],
         paused: "The GPs work side by side, while the renderers still hand over the picture before.",
       },
       {
         title: "3. RENDER",
         say: "A renderer has a tiny processor for each of its 16,384 pixels, and all obey one command at once. The GPs send it the bin of a region, and after the last triangle the region is finished.",
-        until: "commands", ms: 200, slower: 100, then: 1, show: ["diagram", "regions", "age"],
+        until: "commands", ms: 200, slower: 100, then: 0.4, thenSlower: 4000, show: ["diagram", "regions", "age"],
         paused: "Drawing commands travel from GPs to renderers.",
       },
       {
         title: "4. COPY",
         say: "Finished pixels go over the ring into the memory of the picture, one region at a time. The frame in the picture marks the region that is travelling now.",
-        until: "copy", ms: 200, slower: 400, then: 2.5, show: ["diagram", "regions", "age"],
+        until: "copy", ms: 200, slower: 100, then: 1.5, thenSlower: 800, show: ["diagram", "regions", "age"],
         paused: "The picture on the screen is still an older one.",
       },
       {
