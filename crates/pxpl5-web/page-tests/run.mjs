@@ -12,7 +12,7 @@ import { STORIES } from "../page/stories.js";
 const [site, pictures] = process.argv.slice(2);
 mkdirSync(pictures, { recursive: true });
 const MODELS = { ply: triangle(), obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", pdb: "ATOM      1  C   ALA A   1       0.000   0.000   0.000\nATOM      2  O   ALA A   1       1.200   0.000   0.000\n", broken: "ply\nformat ascii 1.0\nelement vertex x\n" };
-const KINDS = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm" };
+const KINDS = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm", ".svg": "image/svg+xml", ".png": "image/png" };
 /** How the server answers for the machine: `well`, `missing`, or `slow`, with each of ten parts after 150 ms. */
 let answers = "well";
 const server = createServer(async (request, response) => {

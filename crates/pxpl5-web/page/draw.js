@@ -184,7 +184,7 @@ const FACES = [["above", 1, 0], ["left", 0, 1], ["ahead", 1, 1], ["right", 2, 1]
 export function drawFaces(place, faces, eyes = 2) {
   if (place.children.length === 0) {
     place.append(...["left", "right"].map((eye) =>
-      make("figure", {}, canvasOf(512, 384, `Six faces around the ${eye} eye, as an unfolded cube: left, ahead, right and behind in a row, above and below`), make("figcaption", { textContent: `around the ${eye} eye` }))));
+      make("figure", {}, canvasOf(512, 384, `Six faces around the ${eye} eye, as an unfolded cube: left, ahead, right and behind in a row, above and below`), make("figcaption", { textContent: `around the ${eye} eye; where a face is black, nothing has been drawn` }))));
   }
   faces.forEach((bytes, eye) => {
     place.children[eye].hidden = bytes.length === 0 || eye >= eyes;

@@ -424,6 +424,7 @@ function layOutParts() {
   at("to-start").setAttribute("aria-current", String(mode === "start"));
   at("to-lab").setAttribute("aria-current", String(mode === "lab"));
   document.body.classList.toggle("ages", shows("age"));
+  document.body.classList.toggle("with-faces", shows("faces") && mode === "story");
   document.body.classList.toggle("with-diagram", shows("diagram") && mode === "story");
 }
 

@@ -133,7 +133,7 @@ export const STORIES = {
       },
       {
         title: "What is left of the lag",
-        say: "The head swings, and the gap to the wire frame of the real world is about a quarter of what Rendering Control leaves. Part of what remains is the delay of the tracker and its cable, which no way of drawing takes back.",
+        say: "The head swings, and the gap to the wire frame of the real world is a fraction of the one that Rendering Control leaves. Part of what remains is the delay of the tracker and its cable, which no way of drawing takes back.",
         ms: 900, slower: 4, show: ["beam", "wire", "age"],
         paused: "In the laboratory, choose rendering-control as the one beside it, press Build, and compare.",
       },
@@ -159,9 +159,9 @@ export const STORIES = {
       },
       {
         title: "Turn the head",
-        say: "The head turns, and the picture turns at once, although the six faces have not been drawn again. The wire frame shows that the world stands still.",
+        say: "The head turns, and the picture turns at once, although the six faces have not been drawn again. The wire frame of the real world lies almost on it, much closer than under Rendering Control.",
         path: swing(18, 2), ms: 1050, slower: 2, show: ["faces", "wire"],
-        paused: "Stopped in a fast turn: picture and wire frame agree.",
+        paused: "Stopped in a fast turn: the gap that is left is the delay of the tracker, not of the drawing.",
       },
       {
         title: "What is not free",

@@ -167,4 +167,37 @@ mod tests {
         assert_eq!(heat(170), [255, 255, 0]);
         assert_eq!(heat(255), [255, 255, 255]);
     }
+
+    fn session(settings: &str, to_ps: u64) -> crate::session::Session {
+        let mut session = crate::session::Session::new(settings, &crate::files::Files::default()).expect("known");
+        session.run_to(to_ps);
+        session
+    }
+
+    /// The depth of a plane is linear on the screen, so that it bends nowhere.
+    #[test]
+    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
+        let opaque =
+            |session: &crate::session::Session| session.outlines(0).chunks(4).filter(|rgba| rgba[3] > 0).count();
+        let plane = session("pipeline=slats\nscene=full-screen:1\nfields=9", 1);
+        assert_eq!(plane.outlines(0).len(), 4 * 640 * 480);
+        assert_eq!(opaque(&plane), 0);
+        let aircraft = session("pipeline=slats\nscene=aircraft\nfields=9", 1);
+        assert!((100..20_000).contains(&opaque(&aircraft)), "{}", opaque(&aircraft));
+        assert!(aircraft.outlines(9).is_empty());
+    }
+
+    #[test]
+    fn joined_faces_are_lit_where_any_memory_is_lit() {
+        let session = session("pipeline=arp-priority\ndisplay=arp\nscene=aircraft\nfields=60", 500_000_000_000);
+        let joined = faces(session.stepper(), Eye::Left, None).expect("a display with faces");
+        let is_lit = |rgba: &[u8]| rgba[..3] != [0, 0, 0];
+        for memory in 0..memories(session.stepper()) {
+            let one = faces(session.stepper(), Eye::Left, Some(memory)).expect("a memory");
+            let lost =
+                one.chunks(4).zip(joined.chunks(4)).filter(|(one, joined)| is_lit(one) && !is_lit(joined)).count();
+            assert_eq!(lost, 0, "memory {memory}");
+        }
+        assert!(faces(session.stepper(), Eye::Left, Some(99)).is_none());
+    }
 }
