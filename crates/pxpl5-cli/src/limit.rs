@@ -20,11 +20,11 @@ use serde_json::json;
   pxpl5 limit --pipeline slats --machine slats-1995       100 triangles were published (I3D95)
   pxpl5 limit --pipeline slats --gps 4 --renderers 10 --binning touched
   pxpl5 limit --pipeline rendering-control --rate 30
-  pxpl5 limit --pipeline slats --scene mig                the aircraft, with ever more of its triangles
+  pxpl5 limit --pipeline slats --scene mig                the aircraft with a growing number of its triangles
   pxpl5 limit --pipeline rendering-control --latency 5    fields
   pxpl5 limit --pipeline slats --set gp.triangle_ns=20000
 
-Which triangles and what must hold is the pipeline's own, unless said.")]
+By default, the pipeline chooses the triangles and the condition of the limit.")]
 pub(crate) struct LimitArgs {
     #[command(flatten)]
     pipeline: PipelineOptions,
