@@ -28,8 +28,10 @@ fn head(text: &mut String, figures: &Figures) {
         text,
         "# Volumetric slices: the SpatialGL paper's figures\n\n\
          The command `pxpl5 volume figures --write docs/volumetric.md` generates this file. A test fails if the file is out of date.\n\n\
-         This file compares the model with one paper by W.-S. Chun, T. J. Purtell II and O. S. Cossairt. Its title is *Technical\n\
-         Introduction to the Basic SpatialGL Rendering Pipeline for Perspecta 1.9/2.0* (Actuality Systems, ASI-0110, 2005).\n\n\
+         This file compares the model with the SpatialGL paper of Actuality Systems:\n\n\
+         | authors | title | report |\n|---|---|---|\n\
+         | W.-S. Chun, T. J. Purtell II, O. S. Cossairt | *Technical Introduction to the Basic SpatialGL Rendering Pipeline for \
+         Perspecta 1.9/2.0* | Actuality Systems, ASI-0110, 2005 |\n\n\
          The column *standing* has these values:\n\n\
          - *published*: The paper prints the number.\n\n\
          - *derived*: The number follows from printed numbers by a formula.\n\n\
@@ -97,7 +99,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
-            "The paper says \"most scenes\" without names. The interval from 5 to 20 is an assumption of the project. A slender \
+            "The paper says \"most scenes\" and does not name them. The interval from 5 to 20 is an assumption of the project. A slender \
              object such as the Mig leaves most of the volume empty."
         }
         "section 6" => {
