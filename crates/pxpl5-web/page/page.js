@@ -912,7 +912,11 @@ async function prepare(tale, number) {
   return true;
 }
 
+/** True if the machine has been loaded; before, there is nothing to tell of. */
+const isReady = () => document.documentElement.dataset.ready === "true";
+
 async function tell(name, number, isNext = false) {
+  if (!isReady()) return;
   turns += 1;
   const mine = turns;
   const tale = STORIES[name];
@@ -943,6 +947,7 @@ async function tell(name, number, isNext = false) {
 }
 
 function toLab() {
+  if (!isReady()) return null;
   turns += 1;
   const wasStart = mode === "start";
   mode = "lab";
@@ -960,6 +965,7 @@ function toLab() {
 }
 
 async function toStart() {
+  if (!isReady()) return;
   turns += 1;
   mode = "start";
   telling = null;
