@@ -366,6 +366,18 @@ impl MachineConfig {
 }
 
 impl MachineConfig {
+    /// Returns the machine with another number of graphics processors, the master included.
+    #[must_use]
+    pub fn with_gps(self, n_gps: usize) -> Self {
+        Self { n_gps, ..self }
+    }
+
+    /// Returns the machine with another number of renderers.
+    #[must_use]
+    pub fn with_renderers(self, n_renderers: usize) -> Self {
+        Self { n_renderers, ..self }
+    }
+
     /// Refuses a ring on which commands for full FIFOs can hold all channels: the pixels of the renderers, which would empty the FIFOs, would
     /// wait for ever. Each renderer receives one message at a time,
     /// and each graphics processor sends on `source_channels` at most.
