@@ -16,7 +16,7 @@ use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, Schedule};
 use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
-use pxpl5_gp::{GpTiming, Stage};
+use pxpl5_gp::{CodeUse, GpTiming, Stage};
 
 const KERNELS: [(Kernel, &str); 3] =
     [(frame(Schedule::Straight), "straight"), (frame(Schedule::Compiled), "compiled"), (frame(Schedule::Dual), "dual")];
@@ -137,9 +137,9 @@ fn comparison() {
     let [straight, compiled, dual] = kernels;
     let in_cache = both(|k| clocks(k, without(&[Freeze::InstructionMiss])));
     println!(
-        "\nCode that fits the instruction cache was published to raise the triangle rate by a factor of about 3. Here the dual \
-         kernel, whose loops fit it, is {:.2} times as fast as the compiled and {:.2} times as fast as the straight one. Without \
-         instruction misses the compiled kernel takes {:.0} clocks and the straight one {:.0}.",
+        "\nCode that fits the instruction cache was published to raise the triangle rate by a factor of about 3. The loops of the dual \
+         kernel fit the instruction cache. The dual kernel is {:.2} times as fast as the compiled kernel and {:.2} times as fast as the \
+         straight kernel. Without instruction misses, the compiled kernel takes {:.0} clocks and the straight kernel takes {:.0} clocks.",
         compiled / dual,
         straight / dual,
         in_cache[1],
@@ -173,7 +173,9 @@ fn causes() {
 
 fn freeze_sensitivity() {
     println!("\n## Sensitivity to each freeze row\n");
-    println!("Change of clocks per triangle when the row is switched off; rows without effect on any are left out.\n");
+    println!(
+        "The table gives the change of clocks per triangle if the row is disabled. The table has no rows without effect.\n"
+    );
     head(&["row", "condition", "straight", "compiled", "dual"]);
     let base = both(|k| clocks(k, Config::cycle()));
     for freeze in &FREEZES {
@@ -192,7 +194,7 @@ fn freeze_sensitivity() {
 
 fn dram_sensitivity() {
     println!("\n## Sensitivity to the memory\n");
-    println!("Change of clocks per triangle at both ends of each parameter's allowed range.\n");
+    println!("The table gives the change of clocks per triangle at both ends of each parameter's allowed range.\n");
     head(&[
         "parameter",
         "default",
@@ -219,7 +221,7 @@ fn dram_sensitivity() {
         row(&[vec![name.to_owned(), entry.value.to_string(), format!("{low} to {high}")], cells].concat());
     }
     println!(
-        "\n`dma_interval` is shown at 8 clocks (half of one ring channel) under \"most\"; 0 means no other bus master."
+        "\nThe columns \"most\" have 8 clocks for `dma_interval`, which is half of one ring channel. The value 0 means no other bus master."
     );
 }
 
@@ -251,9 +253,10 @@ fn strip_clocks(kernel: Kernel, config: Config, length: usize) -> f64 {
 fn sharing() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips, steady state\n");
     println!(
-        "A display list of strips, as T-meshes are: each vertex but the first two of a strip makes a triangle with the two before \
-         it. Frames, all tests and bins included; triangles of about 30 pixels. A corner is transformed once, 76 triangles of 78 \
-         corners are a batch; where a strip begins, two corners make no triangle, and the loop over commands passes over them.\n"
+        "The display list has strips of triangles, like T-meshes. Each vertex of a strip forms a triangle with the two \
+         vertices before it, except for the first two vertices. Pictures are frames, and all tests and bins are included. Triangles have \
+         about 30 pixels. The kernel transforms each corner once. A batch has 76 triangles of 78 corners. At the beginning of a strip, two \
+         corners form no triangle, and the loop over commands skips them.\n"
     );
     let kernel = |surface| Kernel { surface, ..scheduled_phong(KernelList::Strips) };
     head(&[
@@ -282,7 +285,7 @@ fn sharing() -> Result<(), Box<dyn std::error::Error>> {
 /// Prints the clocks by part of the code for Phong triangles, for one long strip and for triangles with separate
 /// corners.
 fn steps() {
-    println!("\n### Clocks by step: one long strip, and triangles with corners of their own (Phong, dual)\n");
+    println!("\n### Clocks by step: one long strip, and triangles with separate corners (Phong, dual)\n");
     head(&["step", "strip", "own corners"]);
     let labels = ["start", "corners", "again", "finished", "bins", "doubt", "clipper"];
     let names = [
@@ -339,9 +342,10 @@ fn strip_causes() {
 fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n### Lower bound of the resources (Phong, dual)\n");
     println!(
-        "Slots that the operations of a stretch need in each half of the pairs (a product of doubles takes two); no schedule of \
-         these operations has fewer pairs than the greater number. A stretch over corners is for three of them: one triangle of its \
-         own corners, three of a strip.\n"
+        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a stretch of code \
+         need. A product of doubles needs two slots. No schedule of these operations has fewer pairs than the greater of both numbers. A \
+         stretch over corners covers three corners. With separate corners, three corners form one triangle. In a strip, three corners \
+         form three triangles.\n"
     );
     head(&["stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
     for (list, name) in [(KernelList::Strips, "strip"), (KernelList::Triangles, "own corners")] {
@@ -352,8 +356,8 @@ fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!(
-        "\nWhat is left: drains of the pipes, for which values wait that have 30 registers, and in memory the two loops that take \
-         turns in the instruction cache (a larger batch would not fit the data cache). An edge of a strip is computed for both of \
+        "\nThree effects explain the remaining time. First, values wait in the 30 registers until the pipes drain. Second, the two loops \
+         evict each other from the instruction cache, and a larger batch would not fit the data cache. Third, an edge of a strip is computed for both of \
          its triangles."
     );
     Ok(())
@@ -378,9 +382,10 @@ fn on_board_us(preset: &str, level: Level) -> Result<f64, Box<dyn std::error::Er
 fn board() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## On the board: the cycle level\n");
     println!(
-        "Slats as the kernels run it on the machine (fields, no bins, caches as the run leaves them), beside the timing \
-         table, for small triangles of 1.3 regions each. The presets of 1994 and 1995, whose code did not fit the \
-         instruction cache, run *compiled*, `slats-optimised` runs *dual*. Nothing is fitted at this level.\n"
+        "The first table compares the timing table with the cycle level for Slats. At the cycle level, the kernels run on the boards of the \
+         machine. The pictures are fields without bins, and the caches keep their contents during the run. The triangles are small and \
+         touch 1.3 regions each. The presets of 1994 and 1995 run the *compiled* kernel, because their code did not fit the instruction \
+         cache. The preset `slats-optimised` runs the *dual* kernel. No number is fitted at the cycle level.\n"
     );
     head(&["preset", "kernel", "us per triangle and eye: table", "cycle level", "published"]);
     for (preset, kernel, published) in [
@@ -412,9 +417,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
         row(&[name.into(), kernel.into(), table, small?, full?, published.into()]);
     }
     println!(
-        "\nThe compiled kernel was written by rules (kernels/compiled_rules.md) before its figures were looked at; they are reported as \
-         they came. No triangle of either scene is clipped, and Slats sends each to all regions: so the limit does not depend on the triangles' \
-         size."
+        "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the first comparison with its figures. The table \
+         reports the first results. No triangle of either scene is clipped, and Slats sends each triangle to all regions. The limit \
+         therefore does not depend on the size of the triangles."
     );
     Ok(())
 }
@@ -423,8 +428,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
-        "Mean times over the three application scenes, each with its least and greatest scene (pxpl5_lab::code_times; standing: derived \
-         from code). `machine.times = \"code\"` takes them into the table; without it the table is the published or fitted one.\n"
+        "The table gives mean times over the three application scenes, and the range over these scenes (pxpl5_lab::code_times). The \
+         provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the timing table has these times. Otherwise, the \
+         timing table has the published or fitted times.\n"
     );
     head(&[
         "code",
@@ -487,10 +493,10 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
 fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips and blocks\n");
     println!(
-        "Clocks of what just-in-time pixels do for a strip of one line, with the triangles of the aircraft (pxpl5_lab::code_times): \
-         windows_rules.md, between_rules.md and order_rules.md in crates/pphigs/kernels. Blocks of frameless rendering are searched for by \
-         the same code. A strip between two views begins a pass of its own. In the table of times `jitp.interpolate_ns` stands for a \
-         triangle that is interpolated, 280 clocks (assumed).\n"
+        "The table gives the clocks of the work of just-in-time pixels for a strip of one line, with the triangles of the aircraft \
+         (pxpl5_lab::code_times). The rules are in windows_rules.md, between_rules.md and order_rules.md in crates/pphigs/kernels. Frameless \
+         rendering searches its blocks with the same code. A strip between two views begins a pass of its own. In the timing table, \
+         `jitp.interpolate_ns` is the time of an interpolated triangle, which is assumed as 280 clocks.\n"
     );
     head(&[
         "code",
@@ -542,34 +548,64 @@ fn sizes() {
 
 const INTRODUCTION: &str = "# Time per triangle on a graphics processor
 
-Made by `cargo run --profile test --example gp_timing > docs/gp-timing.md`; do not edit.
+The command `cargo run --profile test --example gp_timing > docs/gp-timing.md` makes this file. Do not edit it.
 
-Three kernels in i860 assembly (crates/pxpl5-geometry/kernels) take triangles from the display list to the words of a
-renderer command and an entry in the bin of every region touched: transform of three corners, guard-band test, 1 / w by
-seed and Newton steps, snapping to 1/16 pixel, depth, light at the corners (or normals, for Phong shading),
-orientation, three edge expressions, planes of depth and of three components, their restatement for a field, binning.
-*Straight* is code without optimisation: every statement through the stack frame and everything inlined. *Compiled* is
-what a good compiler of about 1990 makes of a plain C program, by rules that were written down before anything was
-measured (kernels/compiled_rules.md): functions, loops, locals in registers, scalar floating point. *Dual* is linear code
-put in order for dual-instruction mode (i860::linear), a batch of 26 triangles in two loops that each fit the 4 KB
-instruction cache. All give the words of the native code bit for bit (crates/pphigs/tests/kernels.rs and code.rs).
-Triangles that are not wholly inside the guard band go to the clipper, which is the same code for all: functions, loops and scalar
-floating point by the rules of the compiled kernel.
+## The kernels
 
-Spheres (centre and radius to the eye, near and far plane, conic, bounding box, regions, fixed point, planes: kernels/sphere.s), edits
-and the beginning of a pass (bins reset, matrices of each structure multiplied and turned round, light) are code in the same
-manner. Messages and chains are received and sent by crates/pxpl5-gp/kernels/ring.s, and the bins of tokens are
-handed over by crates/pphigs/kernels/token.s; the original's operating software is not published, and ring_rules.md says what this
-one stands for. The kernels of these tables know the size of an NTSC frame or field; those of other frames in regions of 128 x 128
-(faces of a cube, other displays) read it from their parameter block (kernels/grid.s). Which of six faces a primitive may touch is found by
-crates/pphigs/kernels/sort.s (sort_rules.md), what meets a strip of lines or a block by windows.s (windows_rules.md), and triangles between
-the views of a field's begin and end come from between.s (between_rules.md). Not in code: what a master decides, and moving vertices where
-cells are warped. What the ring's interface does of a message (its DMA, its FIFOs) is no code at any level: it is simulated word by
-word. So a figure of the whole program is expected to be larger than these.
+Three kernels in i860 assembly process a triangle (crates/pxpl5-geometry/kernels). Their input is a triangle of the
+display list. Their output is the words of a renderer command and an entry in the bin of each touched region. Each
+kernel has these steps:
 
-Input of the tables before the last but two: 1,000 triangles of about 30 pixels, each corner with its own position,
-normal and colour, streamed from memory. Processor: 40 MHz, the freeze rules and the memory of
-crates/i860/src/timing.rs, all of which are assumed; hence the tables of sensitivity.
+- It transforms three corners and tests them against the guard band.
+
+- It computes 1 / w from a seed with Newton steps, snaps the corners to 1/16 pixel, and computes their depth.
+
+- It computes the light at the corners. For Phong shading, it keeps the normals instead.
+
+- It tests the orientation and computes three edge expressions, the plane of depth, and the planes of three components.
+
+- It converts the expressions for a field and sorts the triangle into bins.
+
+The three kernels differ in their code:
+
+- *straight* is code without optimisation. Each statement uses the stack frame, and all functions are inlined.
+
+- *compiled* is like the output of a good compiler of about 1990 for a plain C program. It has functions, loops, locals in
+  registers, and scalar floating point. Its rules were written down before the first measurement (compiled_rules.md).
+
+- *dual* is linear code that `i860::linear` schedules for dual-instruction mode. It processes a batch of 26 triangles in
+  two loops. Each loop fits the instruction cache of 4 KB.
+
+All three kernels give exactly the words of the native code (crates/pphigs/tests/kernels.rs and code.rs). Triangles that
+are not completely inside the guard band go to the clipper. The clipper is the same code for all three kernels. It has
+functions, loops and scalar floating point by the rules of the compiled kernel.
+
+Other code follows the same rules:
+
+| work | code |
+| --- | --- |
+| spheres: centre and radius to the eye, near and far plane, conic, bounding box, regions, fixed point, planes | kernels/sphere.s |
+| edits | i860 code in the same manner |
+| beginning of a pass: reset of the bins, matrices of each structure multiplied and transposed, light | i860 code in the same manner |
+| receiving and sending of messages and chains | crates/pxpl5-gp/kernels/ring.s, ring_rules.md |
+| bin handoff for tokens | crates/pphigs/kernels/token.s |
+| frames in regions of 128 x 128 for faces of a cube and other displays | kernels/grid.s |
+| selection of the faces that a primitive may touch | crates/pphigs/kernels/sort.s, sort_rules.md |
+| window search for a strip of lines or a block | windows.s, windows_rules.md |
+| triangles between the views of a field's begin and end | between.s, between_rules.md |
+
+The operating software of the original machine is not published. The file ring_rules.md describes what the code in
+ring.s stands for. The kernels of the tables below have the size of an NTSC frame or field as constants. The kernels for
+other frames read the size from their parameter block.
+
+Two kinds of work are not in code: the decisions of a master, and the warping of vertices at the borders of cells. The
+ring interface has no code at any level, because its DMA and its FIFOs are simulated word by word. The time of a whole
+program is therefore longer than the times in the tables below.
+
+The tables before the section \"Strips, steady state\" use 1,000 triangles of about 30 pixels. Each corner has its own
+position, normal and colour, which the kernel reads from memory. The processor runs at 40 MHz
+with the freeze rules and the memory of crates/i860/src/timing.rs. The freeze rules and the memory are assumed, so two
+tables show the sensitivity to them.
 ";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

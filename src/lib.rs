@@ -112,7 +112,9 @@ pub mod firmware {
         DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
     };
     pub use pxpl5_geometry::Viewport;
-    pub use pxpl5_gp::{Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket};
+    pub use pxpl5_gp::{
+        CodeUse, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket,
+    };
     pub use pxpl5_renderer::{CommandKind, Layout, PixelArray};
     pub use pxpl5_wire::{
         Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber,

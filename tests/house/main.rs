@@ -5,6 +5,7 @@
 mod crates;
 mod document;
 mod modules;
+mod prose;
 mod source;
 
 use crates::{Crate, workspace};
@@ -164,6 +165,12 @@ fn only_the_command_prints() {
             assert!(!prints, "{} of {} prints", file.path, member.name);
         }
     }
+}
+
+/// A hint and not a judge: a person reads the text.
+#[test]
+fn no_text_becomes_harder_to_read() {
+    prose::check(&workspace());
 }
 
 #[test]

@@ -10,17 +10,17 @@ parameters::parameter_table! {
         /// Display memories per eye, each a double-buffered cube with depth.
         display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
         /// Texels along an edge of a face, including guard texels. Must be a multiple of 128.
-        face_texels: 256, "texels", Assumed, 128..=2048, "not printed; 256 is what a port of the ring can fill 25 times a second, 512 with ideal faces";
+        face_texels: 256, "texels", Assumed, 128..=2048, "not printed; a port of the ring can fill faces of 256 texels 25 times a second; 512 for ideal faces";
         /// Texels on each side of a face that repeat the content of the neighbouring face.
-        guard_texels: 1, "texels", Assumed, 0..=8, "not printed; one keeps every footprint on its face";
+        guard_texels: 1, "texels", Assumed, 0..=8, "not printed; with 1, every footprint lies on its face";
         /// Bits of each component of a viewing vector, including the sign.
-        vector_bits: 16, "bits", Assumed, 8..=24, "not printed; 16 bits err by 0.02 texels of 512";
+        vector_bits: 16, "bits", Assumed, 8..=24, "not printed; 16 bits give an error of 0.02 texels on faces of 512";
         /// Bits of each component of the matrix, including the sign.
-        matrix_bits: 16, "bits", Assumed, 8..=24, "not printed; as the vectors";
+        matrix_bits: 16, "bits", Assumed, 8..=24, "not printed; the same as the vectors";
         /// Bits of a quotient. The divider has one stage per bit.
         quotient_bits: 16, "bits", Assumed, 8..=20, "not printed; 1/128 texel of 512";
         /// Bits of each of the two fractions that weight four texels. 0 selects the nearest texel.
-        weight_bits: 4, "bits", Assumed, 0..=8, "RPM has hardware for it, its words are not printed";
+        weight_bits: 4, "bits", Assumed, 0..=8, "RPM has hardware for weights and does not print their width";
         /// Bits of depth in a display memory: 16 or 24.
         depth_bits: 24, "bits", Derived, 16..=24, "the machine's depth";
         /// Bits of colour in a display memory: 24, or 16 as 5, 6 and 5.
@@ -28,7 +28,7 @@ parameters::parameter_table! {
         /// Duration of one stage.
         stage_ps: 25_000, "ps", Assumed, 1_000..=38_461 in 1..=1_000_000, "RP94: orientation less than 1 us before the first pixel, so below 38.46 ns in 26 stages";
         /// Horizontal angle of the picture.
-        horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 with the equidistant lens or a table alone";
+        horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 only with the equidistant lens or a table";
         /// Time of one word at a port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }

@@ -11,13 +11,13 @@ parameters::parameter_table! {
         /// Number of slices strobed in a revolution.
         slices: 396, "slices", Published, 396..=396 in 4..=4096, "the SpatialGL paper (P1)";
         /// Number of pixels in a line of the projector.
-        width: 768, "pixels", Assumed, 256..=2048 in 8..=4096, "open in the paper; 768 x 768 in SPIE 4297, 1024 x 768 in SPIE 5664";
+        width: 768, "pixels", Assumed, 256..=2048 in 8..=4096, "the paper gives no value; 768 x 768 in SPIE 4297, 1024 x 768 in SPIE 5664";
         /// Number of lines of the projector.
-        height: 768, "lines", Assumed, 256..=2048 in 1..=4096, "open in the paper; 768 in SPIE 4297 and SPIE 5664";
+        height: 768, "lines", Assumed, 256..=2048 in 1..=4096, "the paper gives no value; 768 in SPIE 4297 and SPIE 5664";
         /// Revolutions of the screen per minute.
-        spin_rpm: 900, "1/min", Assumed, 600..=900 in 1..=1_000_000, "open in the paper; 600 in SPIE 4297, 730 and 900 in the press";
+        spin_rpm: 900, "1/min", Assumed, 600..=900 in 1..=1_000_000, "the paper gives no value; 600 in SPIE 4297, 730 and 900 in the press";
         /// Percentage of a strobe's interval in which it is lit.
-        lit_percent: 100, "%", Assumed, 1..=100 in 1..=100, "open in the paper; what is less only dims";
+        lit_percent: 100, "%", Assumed, 1..=100 in 1..=100, "the paper gives no value; a lower value only makes the display darker";
         /// Time to transfer one word at the port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel of the ring, the same as other displays";
     }

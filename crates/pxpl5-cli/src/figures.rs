@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
   pxpl5 figures --only 4,7               these figures, without their intervals
   pxpl5 figures --json
   pxpl5 figures --write ACCURACY.md
-  pxpl5 figures --check ACCURACY.md      fails when the file is not what the figures give")]
+  pxpl5 figures --check ACCURACY.md      fails if the file is out of date")]
 pub(crate) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]

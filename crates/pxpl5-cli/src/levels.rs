@@ -19,9 +19,9 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   pxpl5 levels
   pxpl5 levels --json
-  pxpl5 levels --measure                                            all again, on this machine
+  pxpl5 levels --measure                                            measures everything again, on this computer
   pxpl5 levels --measure --write docs/levels.json --chart docs/levels.svg
-  pxpl5 levels --measure --errors-only --experiments 1000           no speeds: they need a quiet machine
+  pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer
   pxpl5 levels --scaling docs/scaling.md")]
 pub(crate) struct LevelsArgs {
     /// Print one JSON object.

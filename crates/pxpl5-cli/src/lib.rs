@@ -70,12 +70,12 @@ struct Cli {
 }
 
 const EXAMPLES: &str = "Examples:
-  pxpl5                                                     both pipelines at work, pictures in out/
+  pxpl5                                                     Rendering Control and Slats, pictures in out/
   pxpl5 run --pipeline slats --scene mig --triangles 140    one experiment
   pxpl5 run --pipeline rendering-control --scene bunny.ply --gps 24 --out out/bunny
   pxpl5 run experiments/figure-04.toml --set seed=7 --json
 
-Exit codes: 0 all went well, 1 something failed, 2 the command line or an experiment file is wrong, 75 another process writes there.";
+Exit codes: 0 success, 1 failure, 2 wrong command line or experiment file, 75 another process writes to the folder.";
 
 #[derive(Subcommand, Debug)]
 enum Command {

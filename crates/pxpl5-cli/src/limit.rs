@@ -20,14 +20,14 @@ use serde_json::json;
   pxpl5 limit --pipeline slats --machine slats-1995       100 triangles were published (I3D95)
   pxpl5 limit --pipeline slats --gps 4 --renderers 10 --binning touched
   pxpl5 limit --pipeline rendering-control --rate 30
-  pxpl5 limit --pipeline slats --scene mig                the aircraft, with ever more of its triangles
+  pxpl5 limit --pipeline slats --scene mig                the aircraft with a growing number of its triangles
   pxpl5 limit --pipeline rendering-control --latency 5    fields
   pxpl5 limit --pipeline slats --set gp.triangle_ns=20000
   pxpl5 limit --pipeline rendering-control --scene head --machine large --over machine.n_gps --rate 15
   pxpl5 limit --pipeline rendering-control --scene mig --over machine.n_renderers --latency 6
 
-Which triangles and what must hold is the pipeline's own, unless said. Of --over KEY the goal may be reached from a value on, up to one, or
-in a part of the range; the ends of the range and three values between them are tried first.")]
+By default, the pipeline chooses the triangles and the condition of the limit. With --over KEY, the goal may hold above a value, below
+a value, or in a part of the range. The search first tries the ends of the range and three values between them.")]
 pub(crate) struct LimitArgs {
     #[command(flatten)]
     pipeline: PipelineOptions,

@@ -13,8 +13,8 @@ use std::fmt::Write;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 machines
-  pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source,
-                                those of the i860 and of trackers too; --set PATH=VALUE changes it")]
+  pxpl5 machines small-hmd      every parameter with unit, provenance, allowed range and source,
+                                also for the i860 and the trackers; --set PATH=VALUE changes a parameter")]
 pub(crate) struct MachinesArgs {
     /// Show all parameters of this machine.
     #[arg(value_name = "PRESET")]

@@ -18,10 +18,10 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   pxpl5 run --pipeline slats --scene mig --triangles 140 --out out/mig
   pxpl5 report out/mig                 writes out/mig/report.html
-  pxpl5 report out --write page.html   of what pxpl5 demo wrote
-  pxpl5 report out/slats               of a sweep or a comparison
+  pxpl5 report out --write page.html   a report of the folder that pxpl5 demo wrote
+  pxpl5 report out/slats               a report of a sweep or a comparison
 
-The page needs no network, fits a phone and can be printed.")]
+The page works without a network and on a phone, and it can be printed.")]
 pub(crate) struct ReportArgs {
     /// Results of `pxpl5 run --out`, `pxpl5 demo`, `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its
     /// report.json, rows.jsonl or comparison.json.

@@ -26,7 +26,8 @@ use std::fmt::Write;
   pxpl5 rig --pipeline slats --tracker fastrak --passes 100 --json
   pxpl5 rig --pipeline rendering-control --machine large --set gp.triangle_ns=30000
 
-Scene, motion and length are the rig's own: --scene, --triangles, --head, --fields, --predict, --aim, --raster and --pixels do not apply.")]
+The rig has its own scene, motion and length. The options --scene, --triangles, --head, --fields, --predict, --aim, --raster and --pixels
+do not apply.")]
 pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,

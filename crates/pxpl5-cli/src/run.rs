@@ -30,8 +30,8 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
   pxpl5 run --restore s.json --fields 600
 
-Exit code 0: done. 1: it failed; or no picture was shown behind the first four, so that there is no latency: the report and all files are
-written all the same, with null for what was not measured. 2: the command line or a file is wrong.")]
+Exit code 0: The run succeeded. Exit code 1: The run failed, or it showed no picture after the first four and so has no latency. The report
+and all files are written also without a latency, with null for missing results. Exit code 2: The command line or a file is wrong.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats --resume        after an interruption
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats-1 --shard 1/8   one of eight shares; see `pxpl5 merge`
-  pxpl5 sweep experiments/sweep-slats.toml --out out/slats --slurm jobs    as jobs of Slurm: bash jobs/submit.sh")]
+  pxpl5 sweep experiments/sweep-slats.toml --out out/slats --slurm jobs    writes jobs for Slurm; start them with bash jobs/submit.sh")]
 pub(crate) struct SweepArgs {
     /// Experiment file with a table `sweep`.
     #[arg(value_name = "FILE")]

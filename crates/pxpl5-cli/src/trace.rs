@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
   pxpl5 trace --pipeline slats --scene mig --triangles 140 --fields 20 --out slats.pftrace
   pxpl5 trace --pipeline rendering-control --scene mig --fields 30 --out mig.json
 
-A trace holds every message; some tens of fields are enough to see a pipeline at work.")]
+A trace holds every message. About 30 fields are enough to show how a pipeline works.")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
     settings: SettingArgs,

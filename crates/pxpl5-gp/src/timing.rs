@@ -9,27 +9,27 @@ parameters::parameter_table! {
         /// Size of a board's memory.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
         /// Part of the memory for the bins of Rendering Control, both contexts together.
-        bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen: 642 a slave in 20 bins, 4 bytes a pointer; printed to three digits. If they hold so many for each eye it is twice that";
+        bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
-        message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the range is what the published latencies allow";
+        message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";
         /// CPU time of one triangle and eye: transform, light, set up, make commands.
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time of one entry in a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
         /// CPU time of one bin entry that is handed over with the token of its region.
-        token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a message: nothing was published of it; times of code count it by itself";
+        token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
         /// Additional CPU time of a triangle that is clipped.
-        guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a triangle in what was published; times of code count it by itself";
+        guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";
         /// CPU time of one sphere and eye.
-        sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
+        sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "the same as a triangle: one transformed centre instead of three vertices, and the set-up of a conic";
         /// CPU time to apply one edit to the display list.
         edit_ns: 10_000, "ns", Assumed, 2000..=50000 in 0..=MAX, "a few hundred instructions of display-list traversal";
         /// CPU time to begin a pass over the display list.
         pass_ns: 5_000, "ns", Assumed, 1000..=20000 in 0..=MAX, "concatenate matrices, reset bins";
         /// Additional CPU time to transform a structure to its place for an eye.
-        structure_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a pass: nothing was published of either; times of code count it by itself";
+        structure_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, because no time was published; times of code count it separately";
         /// Additional CPU time of a structure with spheres, for data of the view that spheres need.
-        sphere_view_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "part of the time of a pass, as that of a structure; times of code count it by itself";
+        sphere_view_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, like the time of a structure; times of code count it separately";
     }
 }
 
@@ -185,7 +185,7 @@ parameters::parameter_table! {
         /// host sends the tracker's reports instead.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
         /// Mean time of the application between the EDIT of a frame and the next frame, if the host waits for EDIT.
-        application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: it asks at once; with the jitter it leaves a trivial scene its printed 30 frames/s";
+        application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
         /// Half width of the uniform distribution of the application's time; at most its mean.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }

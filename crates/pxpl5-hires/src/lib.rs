@@ -24,9 +24,9 @@ parameters::parameter_table! {
         /// Visible lines of a frame.
         height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
         /// Scans of the whole frame per second.
-        refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of that size in those years";
+        refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of this size at the time";
         /// Ports of a board on the ring. Successive regions use them in turn.
-        ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source says how many. 1 as each NTSC frame buffer (TR94): then the 80 regions of a picture take 66.6 ms, five scans, and no more than 14.4 pictures a second go through. 8 is as many as the ring has channels";
+        ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source gives the number. 1 is the number of an NTSC frame buffer (TR94). With 1 port, the 80 regions of a picture take 66.6 ms or five scans, so at most 14.4 pictures per second reach the display. 8 is the number of channels of the ring";
         /// Time of one word at a port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }

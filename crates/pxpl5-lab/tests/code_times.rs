@@ -1,6 +1,6 @@
 //! Tests that the timing table's constants equal the times of the executed code.
 
-use pxpl5_gp::{CodeVersion, GpTiming};
+use pxpl5_gp::{CodeUse, CodeVersion, GpTiming};
 use pxpl5_lab::code_times::{CodeTimes, code_times};
 
 fn table(times: CodeTimes) -> Vec<u64> {

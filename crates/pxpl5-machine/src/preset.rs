@@ -52,7 +52,7 @@ pub const PRESETS: [Preset; 7] = [
     },
     Preset {
         name: "slats-optimised",
-        about: "1 GP, 5 renderers, code of 1994 at a third of the time per triangle (I3D95: what fitting the cache gives)",
+        about: "1 GP, 5 renderers, code of 1994 at a third of the time per triangle, the gain of code that fits the cache (I3D95)",
         n_gps: 1,
         n_renderers: 5,
         gp: GpTiming::SLATS_OPTIMISED,

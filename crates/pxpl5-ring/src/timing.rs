@@ -15,10 +15,10 @@ parameters::parameter_table! {
         /// Number of channels. Each carries one message at a time.
         channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
         /// Channels that one board can send on at a time, to different receivers.
-        source_channels: 2, "channels", Assumed, 1..=2 in 1..=64, "no source gives it. At most 2: a GP's memory bus has 64 bits every second clock of 40 MHz, 160 MB/s, which are two channels of 80 MB/s. At least 1: the processor itself needs the bus too. Other boards have at most a copy and its acknowledgement under way";
+        source_channels: 2, "channels", Assumed, 1..=2 in 1..=64, "no source gives the value. At most 2, because the memory bus of a GP moves 64 bits every second clock of 40 MHz. These 160 MB/s are two channels of 80 MB/s. At least 1, because the processor also needs the bus. Other boards send at most a copy and its acknowledgement at the same time";
         /// Channels that messages to receivers with a FIFO may use together. The others are left to receivers that
         /// never stall.
-        fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
+        fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers. If full FIFOs could block all 8 channels, the pixels of the renderers would wait forever. 6 leaves one channel for each of two frame buffers";
     }
 }
 

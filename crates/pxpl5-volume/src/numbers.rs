@@ -8,7 +8,7 @@ parameters::parameter_table! {
         /// Bias of the hyperbolic clip.
         bias_px2: f64 = 0.25, "px^2", Assumed, 0.0..=4.0 in 0.0..=16777216.0, "the square of the offset";
         /// Fraction bits of the evaluated planes. A value of 53 means double precision.
-        plane_fraction_bits: 53, "bits", Assumed, 4..=53 in 0..=53, "open in the paper; the dead zone shows what few bits do";
+        plane_fraction_bits: 53, "bits", Assumed, 4..=53 in 0..=53, "the paper gives no value; fewer bits widen the dead zone";
     }
 }
 
@@ -16,11 +16,11 @@ parameters::parameter_table! {
     /// Parameters of the random eye and shear of each slice.
     pub struct JitterNumbers {
         /// Distance of the eye from the slice.
-        eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "open in the paper";
+        eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the paper gives no value";
         /// Radius of the disc in which the eye lies.
-        eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "open in the paper";
+        eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper gives no value";
         /// Greatest shift by the shear at the face of the slab.
-        shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper: below a pixel";
+        shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper states a shift of less than a pixel";
     }
 }
 
@@ -32,7 +32,7 @@ parameters::parameter_table! {
         /// Vertical position of the perspective eye in the slice's coordinates.
         up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
         /// Distance of the eye from the slice.
-        distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "as with jitter";
+        distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the same as with jitter";
         /// Horizontal shear, in pixels per pixel of distance from the slice.
         shear_across: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
         /// Vertical shear, in pixels per pixel of distance from the slice.
@@ -54,9 +54,9 @@ parameters::parameter_table! {
     /// Numbers of sampling and halftoning.
     pub struct DrawNumbers {
         /// Number of samples per pixel.
-        samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more as too dear; 4 and 16 for comparison";
+        samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more samples as too expensive; 4 and 16 for comparison";
         /// Number of rows and columns of the dither matrix.
-        matrix: 8, "px", Assumed, 2..=16 in 2..=16, "open in the paper";
+        matrix: 8, "px", Assumed, 2..=16 in 2..=16, "the paper gives no value";
     }
 }
 
@@ -64,7 +64,7 @@ parameters::parameter_table! {
     /// The angle at which a turn begins.
     pub struct SweepNumbers {
         /// Angle of slice 0.
-        phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "open in the paper";
+        phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "the paper gives no value";
     }
 }
 
@@ -72,11 +72,11 @@ parameters::parameter_table! {
     /// The viewer before the display, and the head-mounted display for comparison.
     pub struct ViewerNumbers {
         /// Diameter of the displayed volume.
-        diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "open in the paper; 768 px over 10 inches in SPIE 4297";
+        diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "the paper gives no value; 768 px over 10 inches in SPIE 4297";
         /// Distance of the head from the middle of the volume at the beginning of a motion.
-        distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, as other views";
+        distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, the same as other views";
         /// Distance between both eyes.
-        eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "a mean head";
+        eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "the mean of human heads";
         /// Width of the head-mounted display's picture, whose height is three quarters of the width.
         hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
         /// Angle between the left and the right edge of the head-mounted display's picture.

@@ -25,7 +25,7 @@ fn drawn(settings: &VolumeSettings) -> Volume {
 }
 
 /// Fields of a report, from the list of section 9.
-const FIELDS: [&str; 34] = [
+const FIELDS: [&str; 35] = [
     "display",
     "clip",
     "projection",

@@ -6,6 +6,12 @@ const make = (name, given = {}, ...inner) => {
   return element;
 };
 
+/** A span for reading: whole milliseconds from 100 on, otherwise three digits. */
+export function inMs(ms) {
+  if (Math.abs(ms) >= 100) return `${Math.round(ms).toLocaleString("en")} ms`;
+  return `${ms.toFixed(Math.abs(ms) >= 10 ? 1 : 2)} ms`;
+}
+
 /** Bytes of a picture into a canvas of its size. */
 export function picture(canvas, bytes) {
   if (bytes.length !== 4 * canvas.width * canvas.height) return;
@@ -19,28 +25,67 @@ function canvasOf(width, height, label) {
   return canvas;
 }
 
+/** The name of a pipeline as the papers write it. */
+export const nameOf = (pipeline) => ({ slats: "Slats", "rendering-control": "Rendering Control" })[pipeline] ?? pipeline;
+
 /** A row of pictures for each machine; `record` is told of each canvas that a head can be dragged on. */
 export function layOutEyes(place, states, names, record) {
   const machines = states.map((state, n) => {
     const eyes = state.surfaces.map(({ label, width, height }) => {
       const canvas = canvasOf(width, height, `What the beam has drawn: ${label}`);
+      canvas.tabIndex = 0;
       record(canvas);
+      // Wire frame, beam and regions lie over the picture.
+      const over = make("canvas", { width, height, className: "over" });
+      over.setAttribute("aria-hidden", "true");
       const ideal = canvasOf(width, height, `Ideal picture: ${label}`);
       const heat = canvasOf(width, height, `Error: ${label}`);
       const numbers = make("figcaption");
       const figures = [
-        make("figure", { className: "seen" }, canvas, make("figcaption", { textContent: `${label} eye, as the beam draws it` })),
+        make("figure", { className: "seen" }, make("div", { className: "screen" }, canvas, over), make("figcaption", { textContent: `${label} eye, as the beam draws it` })),
         make("figure", { hidden: true }, ideal, make("figcaption", { textContent: `${label}: ideal picture now` })),
         make("figure", { hidden: true }, heat, numbers),
       ];
-      return { canvas, ideal, heat, numbers, figures };
+      return { label, canvas, over, ideal, heat, numbers, figures };
     });
     const row = make("div", { className: "eyes" }, ...eyes.map((eye) => make("div", { className: "eye" }, ...eye.figures)));
-    return { eyes, section: make("div", { className: "machine" }, make("h2", { textContent: names[n] }), row) };
+    const age = make("p", { className: "age" });
+    const heading = make("div", { className: "whose" }, make("h2", { textContent: nameOf(names[n]) }), age);
+    return { eyes, age, section: make("div", { className: "machine" }, heading, row) };
   });
   place.replaceChildren(...machines.map((machine) => machine.section));
   place.className = machines.length > 1 ? "two" : "";
   return machines;
+}
+
+/** Draws over a picture: the wire frame of the world now, regions on their way, and the beam's line (null for none). */
+export function drawOver(over, { wire, regions, line }) {
+  const context = over.getContext("2d");
+  context.clearRect(0, 0, over.width, over.height);
+  if (wire?.length === 4 * over.width * over.height) {
+    // Lines of several pixels, so that they are seen in a small picture.
+    const lines = new OffscreenCanvas(over.width, over.height);
+    lines.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(wire.buffer), over.width, over.height), 0, 0);
+    const thick = Math.max(1, Math.round((1.6 * over.width) / Math.max(1, over.clientWidth)));
+    for (let x = 0; x <= thick; x += 1) for (let y = 0; y <= thick; y += 1) context.drawImage(lines, x - thick / 2, y - thick / 2);
+  }
+  context.lineWidth = Math.max(3, over.width / 160);
+  for (const { rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
+    const box = [left, first + top * step, width, Math.max(2, height * step)];
+    context.fillStyle = "rgba(255, 209, 102, .28)";
+    context.fillRect(...box);
+    context.strokeStyle = "#ffd166";
+    context.strokeRect(...box);
+  }
+  if (line !== null && line !== undefined) {
+    const glow = context.createLinearGradient(0, line - over.height / 16, 0, line);
+    glow.addColorStop(0, "rgba(120, 220, 255, 0)");
+    glow.addColorStop(1, "rgba(120, 220, 255, .35)");
+    context.fillStyle = glow;
+    context.fillRect(0, line - over.height / 16, over.width, over.height / 16);
+    context.fillStyle = "#9be7ff";
+    context.fillRect(0, line, over.width, Math.max(2, over.height / 200));
+  }
 }
 
 export function drawRing(place, channels) {
@@ -94,43 +139,68 @@ export function drawTimeline(place, svg) {
   const drawing = root.querySelector("svg");
   const [, , width, height] = drawing.getAttribute("viewBox").split(" ").map(Number);
   drawing.setAttribute("viewBox", `0 ${UNTITLED} ${width} ${height - UNTITLED}`);
+  drawing.setAttribute("part", "drawing");
+  drawing.setAttribute("aria-label", "Timeline: a row for each resource, time to the right, a bar for each piece of work at a picture");
   drawing.removeAttribute("width");
   drawing.removeAttribute("height");
 }
+
+/** Keeps the exact number beside the rounded one, for those who point at it. */
+const exact = (element, ms) => {
+  element.dataset.ms = ms;
+  element.title = `${ms} ms`;
+  return element;
+};
 
 /** A bar for each of the last pictures, its parts beside each other; the numbers of the last one as a table. */
 export function drawLatency(place, machines, names) {
   const longest = Math.max(1, ...machines.flatMap((machine) => machine.latencies.pictures.map((one) => one.total_ms)));
   place.replaceChildren(...machines.map((machine, n) => {
     const { parts, pictures } = machine.latencies;
-    const name = machines.length > 1 ? `${names[n]}: ` : "";
+    const name = machines.length > 1 ? `${nameOf(names[n])}: ` : "";
     if (pictures.length === 0) return make("p", { textContent: `${name}no picture has been shown yet` });
     const bars = pictures.map(({ picture: number, ms, total_ms: total }) => {
       const pieces = ms.map((span, part) => {
-        const piece = make("i", { className: `part${part}`, title: `${parts[part].name}: ${span.toFixed(3)} ms` });
+        const piece = make("i", { className: `part${part}`, title: `${parts[part].name.replaceAll("_", " ")}: ${inMs(span)}` });
         piece.style.width = `${(100 * span) / longest}%`;
         return piece;
       });
-      return make("div", { className: "bar" }, make("span", { textContent: `picture ${number}: ${total.toFixed(2)} ms` }), make("div", {}, ...pieces));
+      return make("div", { className: "bar" }, exact(make("span", { textContent: `picture ${number}: ${inMs(total)}` }), total), make("div", {}, ...pieces));
     });
     const last = pictures.at(-1);
     const rows = parts.map((part, k) => [part, last.ms[k], k]).filter(([, span]) => span > 0);
     const table = make("table", {}, make("caption", { textContent: `${name}picture ${last.picture}, part by part` }), make("tbody", {},
       ...rows.map(([part, span, k]) => make("tr", { title: part.definition },
         make("th", { scope: "row" }, make("i", { className: `part${k}` }), part.name.replaceAll("_", " ")),
-        make("td", { textContent: `${span.toFixed(3)} ms` })))));
-    return make("div", { className: "latency" }, make("div", {}, ...bars), table);
+        exact(make("td", { textContent: inMs(span) }), span)))));
+    return make("div", { className: "latency" }, make("div", {}, ...(name ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...bars), table);
   }));
 }
 
+/** Faces in the cross of the worker: name, column and row. */
+const FACES = [["above", 1, 0], ["left", 0, 1], ["ahead", 1, 1], ["right", 2, 1], ["behind", 3, 1], ["below", 1, 2]];
+
 /** The six faces that each eye's display memory shows. */
-export function drawFaces(place, faces) {
+export function drawFaces(place, faces, eyes = 2) {
   if (place.children.length === 0) {
     place.append(...["left", "right"].map((eye) =>
-      make("figure", {}, canvasOf(512, 384, `Six faces, ${eye} eye`), make("figcaption", { textContent: `${eye} eye: left, ahead, right, behind; above and below` }))));
+      make("figure", {}, canvasOf(512, 384, `Six faces around the ${eye} eye, as an unfolded cube: left, ahead, right and behind in a row, above and below`), make("figcaption", { textContent: `around the ${eye} eye; where a face is black, nothing has been drawn` }))));
   }
   faces.forEach((bytes, eye) => {
-    place.children[eye].hidden = bytes.length === 0;
-    picture(place.children[eye].querySelector("canvas"), bytes);
+    place.children[eye].hidden = bytes.length === 0 || eye >= eyes;
+    const canvas = place.children[eye].querySelector("canvas");
+    picture(canvas, bytes);
+    const context = canvas.getContext("2d");
+    context.font = "600 15px system-ui, sans-serif";
+    context.textBaseline = "top";
+    for (const [name, column, row] of FACES) {
+      const [x, y] = [128 * column, 128 * row];
+      context.strokeStyle = "#7f8b99";
+      context.strokeRect(x + 0.5, y + 0.5, 127, 127);
+      context.fillStyle = "rgba(0, 0, 0, .65)";
+      context.fillRect(x + 4, y + 4, context.measureText(name).width + 8, 20);
+      context.fillStyle = "#fff";
+      context.fillText(name, x + 8, y + 7);
+    }
   });
 }

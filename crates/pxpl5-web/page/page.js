@@ -1,6 +1,9 @@
-// The page: settings from the form or the address, a run in pieces, and what there is to see of it between them.
+// The page: stories, and the laboratory with settings from the form or the address; a run in pieces, and what there is to see of
+// it between them.
 import { Live, Recorder, csv } from "./recording.js";
-import { drawBoards, drawFaces, drawLatency, drawRing, drawTimeline, layOutEyes, picture } from "./draw.js";
+import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, inMs, layOutEyes, nameOf, picture } from "./draw.js";
+import { Diagram } from "./diagram.js";
+import { FIRST_SCREEN, STORIES, inPs, storyOf } from "./stories.js";
 
 const at = (id) => document.getElementById(id);
 const form = at("settings");
@@ -8,6 +11,8 @@ const form = at("settings");
 /** The settings that the address may have, in the order of the link. */
 const KEYS = ["pipeline", "scene", "triangles", "display", "head.motion", "head.tracker", "head.predict", "level", "fields"];
 const FIRST = { pipeline: "slats", scene: "aircraft", display: "ntsc", fields: "3600" };
+/** What else the address may have. */
+const OTHERS = ["beside", "motion", "at", "story", "step"];
 /** What a recording of the visitor is called in settings and files. */
 const RECORDED = "recorded.csv";
 /** The same of a head that is moved while the machine runs. */
@@ -32,6 +37,18 @@ let chosen = null;
 let pixel = null;
 let running = false;
 let looked = { boards: 0, timeline: 0 };
+/** What the page shows: `start`, `story` or `lab`. */
+let mode = "start";
+/** What is drawn besides the pictures: `wire`, `beam`, `regions`, `age`, `latency`, `faces`, `diagram`. */
+let show = new Set();
+/** Eyes of each machine that are drawn. */
+let eyesShown = 2;
+/** Messages that began after this instant have not been drawn yet, picoseconds. */
+let messagesAfter = 0;
+/** What was seen last, for what is written down of it. */
+let seenLast = null;
+let lastTimeline = "";
+const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 // The worker that has the machines.
 
@@ -43,7 +60,9 @@ function startWorker() {
   worker?.terminate();
   worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
   asked = new Map();
+  worker.onerror = (event) => cannotStart(event.message || "the worker of this page does not start");
   worker.onmessage = ({ data }) => {
+    if (data.loaded !== undefined) return loading(data.loaded, data.all);
     const { done, failed } = asked.get(data.id);
     asked.delete(data.id);
     document.documentElement.dataset.asked = asked.size;
@@ -63,6 +82,24 @@ function ask(operation, given) {
   });
 }
 
+/** Tells how much of the machine has come. */
+function loading(bytes, all) {
+  const had = `${(bytes / 1e6).toFixed(1)} MB`;
+  at("loading-says").textContent = all ? `Loading the machine: ${had} of ${(all / 1e6).toFixed(1)} MB` : `Loading the machine: ${had} so far`;
+  if (all) at("loading-share").value = bytes / all;
+  else at("loading-share").removeAttribute("value");
+}
+
+/** Nothing can be computed: what is wrong, and what there is to see all the same. */
+function cannotStart(why) {
+  const book = Object.assign(document.createElement("a"), { href: "../docs/gallery.html", textContent: "The gallery of the book" });
+  at("loading").hidden = false;
+  at("loading-share").hidden = true;
+  at("loading").className = "wrong";
+  at("loading-says").replaceChildren(`The machine cannot start here: ${why}. Load the page again, or use another browser. `, book, " has pictures of every pipeline.");
+  document.documentElement.dataset.ready = "failed";
+}
+
 // Settings.
 
 function choices(name, all) {
@@ -73,9 +110,14 @@ function choices(name, all) {
   }));
 }
 
+/** Keys of the address that this page does not have. */
+let unknown = [];
+
 function fromAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
   const known = KEYS.filter((key) => given.get(key));
+  unknown = [...given.keys()].filter((key) => !KEYS.includes(key) && !OTHERS.includes(key));
+  if (given.has("story") && !storyOf(given)) unknown.push(`story=${given.get("story")}`);
   beside = given.get("beside") ?? "";
   motion = given.get("motion") ?? "";
   return { ...FIRST, ...Object.fromEntries(known.map((key) => [key, given.get(key)])) };
@@ -89,11 +131,21 @@ function intoForm() {
     if (field.options && ![...field.options].some((option) => option.value === value)) field.add(new Option(value, value));
     field.value = value;
   }
+  mark();
+}
+
+/** Marks settings that no machine has been built of yet. */
+function mark() {
+  const wanted = { ...fromForm(), beside: form.elements.beside.value };
+  const built = { ...settings, beside };
+  const names = [...KEYS, "beside"].filter((key) => (wanted[key] ?? "") !== (built[key] ?? ""));
+  for (const key of [...KEYS, "beside"]) form.elements[key].closest("label").classList.toggle("changed", names.includes(key));
+  at("build").classList.toggle("main", names.length > 0);
+  at("changed").textContent = names.length > 0 ? "Changed: press Build, the pictures above are of the settings before." : "";
 }
 
 function fromForm() {
   const pairs = KEYS.map((key) => [key, form.elements[key].value.trim()]);
-  beside = form.elements.beside.value;
   return Object.fromEntries(pairs.filter(([, value]) => value !== ""));
 }
 
@@ -127,21 +179,23 @@ async function refused(error) {
   say(error.message);
 }
 
-/** Builds the machines of the settings; what is wrong with them is said, and the machines before stay. */
-async function build() {
+/** Builds the machines of the settings; what is wrong with them is said, and the machines before stay. `kept` is a live head that
+ *  was moved before, whose samples the new machines are told again. */
+async function build(kept = null) {
   pause();
   await piece;
   const files = [];
   if (dropped) files.push([dropped.name, dropped.bytes]);
   if (settings["head.motion"] === RECORDED) {
     const text = csv(motion);
-    if (text === null) return say("expected motion=yaw,pitch_yaw,pitch_... in tenths of a degree in the address"), false;
+    if (text === null) return say("expected motion=~... or motion=yaw,pitch_yaw,pitch_... (tenths of a degree, at most 1,200 samples) in the address"), false;
     files.push([RECORDED, new TextEncoder().encode(text)]);
   }
-  const begun = settings["head.motion"] === LIVE ? new Live() : null;
+  const begun = settings["head.motion"] === LIVE ? kept ?? new Live() : null;
   if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
-  say("");
+  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which this page does not know: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
+  unknown = [];
   document.body.dataset.busy = "true";
   try {
     await ask("build", { runs: texts, files });
@@ -154,6 +208,8 @@ async function build() {
   at("run").inert = false;
   live = begun;
   reached = 0;
+  messagesAfter = 0;
+  seenLast = null;
   chosen = null;
   pixel = null;
   of = 0;
@@ -162,8 +218,17 @@ async function build() {
   at("pixel").hidden = true;
   at("volume").hidden = true;
   machines = [];
+  diagram.clear();
   await go({ to: 0 });
+  if (mode === "lab") intoForm();
   return true;
+}
+
+/** Goes back to an instant: the machines are built anew and run there, which gives the same run. */
+async function rewind(to) {
+  await build(live);
+  live?.again(to);
+  if (to > 0) await go({ to });
 }
 
 // Looks.
@@ -171,21 +236,33 @@ async function build() {
 /** What is to be seen at this moment: pictures always, the rest now and then, or all of it when the run stands. */
 function wanted(now) {
   const stands = !running;
-  const want = { of, ideal: at("show-ideal").checked, error: at("show-error").checked };
+  const inLab = mode === "lab";
+  const want = { of, surfaces: eyesShown, wire: shows("wire"), regions: shows("regions"), ideal: at("show-ideal").checked && inLab, error: at("show-error").checked && inLab };
   if (stands || now - looked.boards > BOARDS_EVERY) {
     looked.boards = now;
-    const open = at("machine-part").open;
-    Object.assign(want, { boards: open, renderers: open, board: chosen, pixel });
-    if (at("faces-part").open) want.faces = Number(at("memory").value || 0);
+    const open = inLab && at("machine-part").open;
+    Object.assign(want, { boards: open || shows("diagram"), renderers: open, board: chosen, pixel, age: true });
+    if (want.boards) want.messages = messagesAfter;
+    if (shows("faces")) want.faces = at("memory").value === "" || !inLab ? null : Number(at("memory").value);
   } else {
     want.ideal = want.error = false;
   }
   if (stands || now - looked.timeline > TIMELINE_EVERY) {
     looked.timeline = now;
-    if (at("timeline-part").open) want.timeline = Number(at("span").value);
-    if (at("latency-part").open) want.latencies = 8;
+    if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
+    if (shows("latency")) want.latencies = inLab ? 8 : 1;
   }
   return want;
+}
+
+/** True if a part is to be seen: in the laboratory what the machine has, in a story what the step names. */
+function shows(part) {
+  if (mode !== "lab") return show.has(part);
+  if (part === "wire") return at("show-wire").checked;
+  if (part === "faces") return machines.memories > 0;
+  // At full speed the eye sees neither the beam nor a region.
+  if (part === "beam" || part === "regions") return !running || slowness() >= 30;
+  return true;
 }
 
 let piece = Promise.resolve();
@@ -194,29 +271,61 @@ let reached = 0;
 /** How far one step goes at most: an event is not later than the next field. */
 const STEP = 35e9;
 
+/** Most simulated time that is run to an instant in one piece, picoseconds, so that the page can tell how far it is. */
+const WAY = 2e12;
+
 /** One piece of a run, one at a time; what cannot go on is said. */
 function go(how) {
   piece = piece.then(async () => {
     try {
+      // A long way is gone in parts, of which only the last one is looked at.
+      while (how.to !== undefined && !how.stop && how.to - reached > WAY) {
+        const to = reached + WAY;
+        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, want: null });
+        const before = reached;
+        reached = Math.max(...all.map(({ state }) => state.now_ps));
+        at("failure").hidden = false;
+        at("failure").textContent = `Running to ${inMs(how.to / 1e9)}: ${Math.round((100 * reached) / how.to)} % done`;
+        if (reached === before) break;
+      }
       const rows = live?.until(how.to ?? reached + (how.by ?? (how.step ? STEP : 0))) ?? null;
-      draw(await ask("go", { ...how, rows, want: wanted(performance.now()) }));
+      const seen = await ask("go", { ...how, rows, want: wanted(performance.now()) });
+      draw(seen);
+      return seen;
     } catch (error) {
       pause();
       await refused(error);
+      return null;
     }
   });
   return piece;
 }
 
+/** A time for reading; when time goes slowly or in steps, to the microsecond. */
+function readable(ps) {
+  const ms = ps / 1e9;
+  const digits = ms < 10 || (mode === "lab" && (slowness() > 10 || stepped)) ? 3 : 0;
+  return `${ms.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits })} ms`;
+}
+
 function draw(seen) {
+  seenLast = seen;
   const states = seen.machines.map((machine) => machine.state);
   const state = states[0];
   reached = Math.max(...states.map((one) => one.now_ps));
   if (machines.length === 0) layOut(states);
-  machines.forEach(({ eyes }, n) => {
+  machines.forEach(({ eyes, age }, n) => {
+    const { age: found, regions } = seen.machines[n];
+    // Without a sample of its own, a picture has no age.
+    if (found) age.replaceChildren(Object.assign(document.createElement("strong"), { textContent: inMs(found.age_ms) }), " old");
+    else if (found === null) age.textContent = "";
     seen.machines[n].surfaces.forEach((surface, number) => {
-      const { canvas, ideal, heat, numbers } = eyes[number];
-      picture(canvas, surface.seen);
+      const { canvas, over, ideal, heat, numbers } = eyes[number];
+      if (surface.seen) picture(canvas, surface.seen);
+      // All machines have the same head: the world's wire frame is that of the first.
+      const wire = surface.wire ?? seen.machines[0].surfaces[number]?.wire;
+      const mine = regions?.filter((region) => region.surface === number);
+      drawOver(over, { wire, regions: mine, line: shows("beam") ? states[n].line : null });
       ideal.parentElement.hidden = !at("show-ideal").checked;
       heat.parentElement.hidden = !at("show-error").checked;
       if (surface.ideal) picture(ideal, surface.ideal);
@@ -227,43 +336,99 @@ function draw(seen) {
       }
     });
   });
-  at("time").textContent = `${(state.now_ps / 1e9).toFixed(6)} ms`;
-  at("field").textContent = `${state.field} of ${state.fields}`;
+  at("time").textContent = readable(state.now_ps);
+  at("time").dataset.ps = state.now_ps;
+  at("field").textContent = `${state.field.toLocaleString("en")} of ${state.fields.toLocaleString("en")}`;
   at("line").textContent = state.line ?? "-";
   at("bytes").textContent = `${Math.round(seen.bytes / 1e6)} MB`;
   at("hash").textContent = states.map((one) => one.trace_hash).join(" ");
   const failed = states.find((one) => one.failure);
-  const says = failed ? `The machine cannot go on: ${failed.failure}` : state.over ? "All fields have been simulated." : state.last;
+  const says = failed ? `The machine cannot go on: ${failed.failure}` : state.over ? "All fields have been simulated. Begin again goes back to the first." : mode === "lab" ? state.last : null;
   at("failure").textContent = says ?? "";
   at("failure").hidden = !says;
   at("failure").className = failed ? "wrong" : "";
   if (seen.boards) {
-    drawRing(at("ring"), seen.channels);
-    drawBoards(seen, chosen, choose);
+    messagesAfter = state.now_ps;
+    if (shows("diagram")) diagram.draw(seen, chosen);
+    if (mode === "lab" && at("machine-part").open) {
+      drawRing(at("ring"), seen.channels);
+      drawBoards(seen, chosen, choose);
+    }
     if (seen.board !== null) {
       at("board-name").textContent = chosen;
-      at("board").textContent = seen.board;
+      at("board").textContent = humane(seen.board);
     }
     at("pixel").hidden = pixel === null;
     if (pixel) at("pixel").textContent = seen.pixel || "Nothing has been drawn there yet, or there is no such pixel.";
   }
-  if (seen.timeline !== null) drawTimeline(at("timeline"), seen.timeline);
+  if (seen.timeline !== null) {
+    lastTimeline = seen.timeline;
+    drawTimeline(at("timeline"), seen.timeline);
+  }
   if (seen.machines[0].latencies) drawLatency(at("latency"), seen.machines, names());
-  if (seen.faces) drawFaces(at("faces"), seen.faces);
-  drawLink(state);
+  if (seen.faces) drawFaces(at("faces"), seen.faces, eyesShown);
+  at("beam-legend").hidden = !shows("beam");
+  at("wire-legend").hidden = !shows("wire");
+  at("region-legend").hidden = !shows("regions") || !seen.machines.some((one) => one.regions?.some((region) => region.surface < eyesShown));
+  if (mode === "lab") drawLink(state);
+  if (!running) describe();
   if ((failed || state.over) && running) pause();
+}
+
+/** Numbers of a board's description for reading: 31.3 ms, not 31332.000 us. */
+function humane(text) {
+  return text
+    .replace(/(\d+\.\d{3}) us/g, (_, us) => (Number(us) >= 1000 ? inMs(Number(us) / 1000) : `${Number(us).toFixed(1)} us`))
+    .replace(/\b(\d{4,}) bytes/g, (_, bytes) => `${Number(bytes).toLocaleString("en")} bytes`);
+}
+
+/** Says in words what the pictures show, for those who do not see them: when the run stands, not while it goes on. */
+function describe() {
+  machines.forEach(({ eyes }, n) => {
+    const { state, age, surfaces } = seenLast.machines[n];
+    eyes.forEach(({ canvas, label }, number) => {
+      const parts = [`${label} eye under ${nameOf(names()[n])}, scene ${settings.scene}, at ${inMs(state.now_ps / 1e9)}, field ${state.field}`];
+      if (age) parts.push(`the picture is ${inMs(age.age_ms)} old`);
+      if (state.line !== null) parts.push(`the beam is in line ${state.line}`);
+      const difference = surfaces[number]?.difference;
+      if (difference) parts.push(`${difference.differing_percent.toFixed(1)} % of the pixels differ from the ideal picture`);
+      if (live) parts.push("arrow keys turn the head");
+      canvas.setAttribute("aria-label", `${parts.join("; ")}.`);
+    });
+  });
 }
 
 const names = () => pipelines();
 
 function layOut(states) {
   machines = layOutEyes(at("eyes"), states, names(), record);
+  machines.forEach(({ section }) => (section.dataset.eyes = eyesShown));
+  at("faces").replaceChildren();
   ["processors", "renderers", "displays"].forEach((place) => at(place).replaceChildren());
   const memories = states[0].memories;
-  at("faces-part").hidden = memories === 0;
-  at("memory").replaceChildren(...Array.from({ length: memories }, (_, n) => new Option(n > 0 && n + 1 === memories ? `${n} (background)` : n, n)));
-  at("whose").textContent = machines.length > 1 ? `of ${names()[0]}` : "";
+  machines.memories = memories;
+  at("memory").replaceChildren(new Option("all, the nearest of each", ""), ...Array.from({ length: memories }, (_, n) => new Option(n > 0 && n + 1 === memories ? `${n} (background)` : n, n)));
+  layOutParts();
+  at("whose").textContent = machines.length > 1 ? `of ${nameOf(names()[0])}` : "";
 }
+
+/** Shows the parts of the mode. */
+function layOutParts() {
+  document.body.dataset.mode = mode;
+  at("start").hidden = mode !== "start";
+  at("story").hidden = mode !== "story";
+  at("tell").hidden = mode === "lab";
+  at("latency-part").hidden = !shows("latency");
+  at("faces-part").hidden = !shows("faces");
+  at("diagram-part").hidden = !shows("diagram");
+  at("to-start").setAttribute("aria-current", String(mode === "start"));
+  at("to-lab").setAttribute("aria-current", String(mode === "lab"));
+  document.body.classList.toggle("ages", shows("age"));
+  document.body.classList.toggle("with-faces", shows("faces") && mode === "story");
+  document.body.classList.toggle("with-diagram", shows("diagram") && mode === "story");
+}
+
+const diagram = new Diagram(at("diagram"), at("diagram-legend"), choose);
 
 function choose(name) {
   chosen = name;
@@ -275,9 +440,8 @@ function drawLink(state) {
   // What was moved while the machine ran is a recording now.
   if (live) motion = live.text();
   const told = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
-  const address = new URLSearchParams({ ...told, at: String(state.now_ps) });
-  if (beside) address.set("beside", beside);
-  if (told["head.motion"] === RECORDED) address.set("motion", motion);
+  const address = addressOf(told);
+  if (state.now_ps > 0) address.set("at", String(state.now_ps));
   at("again").hidden = told["head.motion"] === RECORDED && motion === null;
   at("link").href = `#${address}`;
   const commands = pipelines().map((name) => {
@@ -287,6 +451,15 @@ function drawLink(state) {
   });
   at("command").textContent = commands.join("\n");
   drawNeeds();
+}
+
+/** The address of settings, without what a page does of itself. */
+function addressOf(all) {
+  const kept = KEYS.filter((key) => all[key] && (all[key] !== FIRST[key] || key === "pipeline")).map((key) => [key, all[key]]);
+  const address = new URLSearchParams(kept);
+  if (beside) address.set("beside", beside);
+  if (all["head.motion"] === RECORDED) address.set("motion", motion);
+  return address;
 }
 
 /** Files that the command needs beside it. */
@@ -312,39 +485,74 @@ function pause() {
   at("go").textContent = "Run";
   at("go").setAttribute("aria-pressed", "false");
   at("speed").textContent = "stands";
+  runs += 1;
 }
 
 const slowness = () => 10 ** Number(at("slower").value);
 const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
 
-/** Goes on by as much simulated time as has passed, divided by how much slower it shall be, as far as the computer comes. */
-async function run() {
+/** Number of runs that were begun or ended, by which a run sees that it is not the present one any more. */
+let runs = 0;
+/** True if the last thing was a step of an event or a line. */
+let stepped = false;
+
+/** Goes on by as much simulated time as has passed, divided by how much slower it shall be, as far as the computer comes: to an
+ *  instant, or until something happens. Returns true if it got there. */
+async function run({ end = Infinity, stop = null } = {}) {
+  if (machines.length === 0) return false;
   running = true;
+  runs += 1;
+  const mine = runs;
+  stepped = false;
   at("go").textContent = "Pause";
   at("go").setAttribute("aria-pressed", "true");
+  at("speed").textContent = "runs";
   let last = performance.now();
   let counted = { at: last, ps: null };
-  while (running) {
+  let isThere = false;
+  while (running && mine === runs && !isThere) {
     await nextFrame();
+    if (mine !== runs) break;
     const now = performance.now();
-    const by = Math.min(((now - last) * 1e9) / slowness(), LONGEST);
+    const by = Math.min(((now - last) * 1e9) / slowness(), LONGEST, end - reached);
     last = now;
-    await go({ by });
+    const watch = stop && { ...stop, piece: Math.max(by / 100, 10e6) };
+    const seen = await go(watch ? { by, stop: watch } : { by });
+    isThere = Boolean(seen?.stopped) || reached >= end;
     if (counted.ps === null) counted = { at: now, ps: reached };
     if (now - counted.at > 1000) {
       const share = (reached - counted.ps) / ((now - counted.at) * 1e9);
-      if (running) at("speed").textContent = `${share.toPrecision(2)} of real time`;
+      if (running && mine === runs) at("speed").textContent = share > 0.95 ? "real time" : share > 0.1 ? `${share.toFixed(2)} of real time` : `${Math.round(1 / share).toLocaleString("en")} times slower`;
       counted = { at: now, ps: reached };
     }
   }
+  if (mine !== runs && !isThere) {
+    // Paused by somebody: what stands is looked at whole.
+    if (!running) await go({});
+    return false;
+  }
+  pause();
   await go({});
+  return isThere;
 }
 
 at("go").addEventListener("click", () => (running ? pause() : run()));
+at("rewind").addEventListener("click", () => rewind(0));
+at("back").addEventListener("click", back);
+
+/** Back by one field of the first display. */
+async function back() {
+  pause();
+  await piece;
+  const state = seenLast?.machines[0].state;
+  if (!state || state.now_ps === 0) return;
+  await rewind(Math.max(0, Math.round(state.now_ps - state.end_ps / state.fields)));
+}
 
 for (const button of document.querySelectorAll("[data-step]")) {
   button.addEventListener("click", () => {
     pause();
+    stepped = button.dataset.step !== "field";
     go({ step: button.dataset.step });
   });
 }
@@ -353,7 +561,7 @@ at("slower").addEventListener("input", () => {
   at("factor").textContent = Math.round(slowness()).toLocaleString("en");
 });
 
-for (const id of ["show-ideal", "show-error", "span", "memory"]) at(id).addEventListener("input", () => running || go({}));
+for (const id of ["show-wire", "show-ideal", "show-error", "span", "memory"]) at(id).addEventListener("input", () => running || go({}));
 for (const part of document.querySelectorAll("details")) part.addEventListener("toggle", () => running || machines.length === 0 || go({}));
 
 at("pixel-form").addEventListener("submit", (event) => {
@@ -365,14 +573,18 @@ at("pixel-form").addEventListener("submit", (event) => {
 
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
+  const before = { settings, beside };
   settings = fromForm();
-  if (await build()) remember();
+  beside = form.elements.beside.value;
+  if (await build()) return remember();
+  // The machine before stays, and the form keeps what was wanted of it.
+  ({ settings, beside } = before);
+  mark();
 });
+form.addEventListener("input", mark);
 
 function remember() {
-  const address = new URLSearchParams(settings);
-  if (beside) address.set("beside", beside);
-  if (settings["head.motion"] === RECORDED) address.set("motion", motion);
+  const address = addressOf(settings);
   history.replaceState(null, "", `#${address}`);
 }
 
@@ -406,6 +618,13 @@ function record(canvas) {
     if (!live && recorder && recorder.angles.length > 3) follow(recorder);
     recorder = null;
   };
+  canvas.addEventListener("keydown", (event) => {
+    const turn = { ArrowLeft: [2, 0], ArrowRight: [-2, 0], ArrowUp: [0, 2], ArrowDown: [0, -2] }[event.key];
+    if (!turn || !live) return;
+    event.preventDefault();
+    event.stopPropagation();
+    live.turn(...turn.map((angle, n) => live.now[n] / 10 + angle));
+  });
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);
 }
@@ -444,7 +663,12 @@ at("tilt").addEventListener("click", async () => {
 });
 
 async function take(file) {
+  if (!/\.(ply|obj|pdb|ent|csv|txt|tum)$/i.test(file.name)) {
+    return say(`${file.name} cannot be used: expected a model (.ply, .obj, .pdb, .ent) or a recorded head motion (.csv, .txt, .tum).`);
+  }
+  if (mode !== "lab") toLab();
   const before = { settings, dropped };
+  at("dropped").textContent = `Reading ${file.name}, ${(file.size / 1e6).toFixed(1)} MB ...`;
   dropped = { name: file.name.replaceAll(/\s+/g, "-"), bytes: new Uint8Array(await file.arrayBuffer()) };
   const isMotion = /\.(csv|txt|tum)$/i.test(dropped.name);
   const key = isMotion ? "head.motion" : "scene";
@@ -514,39 +738,307 @@ function explain(glossary) {
       const hint = at("hint");
       hint.textContent = sentence;
       hint.hidden = false;
+      // Above the term, where there is room, so that what stands below it stays in sight.
+      const isRoom = place.top > hint.offsetHeight + 12;
       hint.style.left = `${Math.max(8, Math.min(place.left, innerWidth - hint.offsetWidth - 8))}px`;
-      hint.style.top = `${place.bottom + scrollY + 6}px`;
+      hint.style.top = `${(isRoom ? place.top - hint.offsetHeight - 6 : place.bottom + 6) + scrollY}px`;
     };
     const hide = () => (at("hint").hidden = true);
     const holder = term.closest("label")?.querySelector("select, input") ?? term.closest("button, summary") ?? term;
-    term.addEventListener("pointerenter", show);
-    term.addEventListener("pointerleave", hide);
-    holder.addEventListener("focus", show);
+    // Not at once, so that nothing is covered on the way to something else; what is pressed is not explained.
+    let soon = 0;
+    term.addEventListener("pointerenter", () => (soon = setTimeout(show, 350)));
+    term.addEventListener("pointerleave", () => { clearTimeout(soon); hide(); });
+    holder.addEventListener("pointerdown", () => { clearTimeout(soon); hide(); });
+    holder.addEventListener("focus", () => holder.matches(":focus-visible") && show());
     holder.addEventListener("blur", hide);
   }
 }
 
-addEventListener("keydown", (event) => event.key === "Escape" && (at("hint").hidden = true));
+addEventListener("keydown", (event) => {
+  if (event.key === "Escape") at("hint").hidden = true;
+  if (event.ctrlKey || event.altKey || event.metaKey || machines.length === 0) return;
+  const target = event.target.closest?.("input, select, textarea, button, summary, a, pre, [role=group]");
+  const isField = target?.matches("input:not([type=checkbox]), select, textarea, pre, [role=group]");
+  const keys = { ArrowRight: forth, ArrowLeft: () => (mode === "story" ? at("story-back").click() : back()), f: fill, F: fill };
+  // On a button the space key presses that button.
+  if (event.key === " " && !target) at("go").click();
+  else if (keys[event.key] && !isField && mode !== "start") keys[event.key]();
+  else return;
+  event.preventDefault();
+});
+
+function forth() {
+  if (mode === "story") return at("story-next").click();
+  pause();
+  go({ step: "field" });
+}
+
+function fill() {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else at("front").requestFullscreen?.();
+}
+at("full").addEventListener("click", fill);
+document.addEventListener("fullscreenchange", () => {
+  const isFull = document.fullscreenElement !== null;
+  at("full").setAttribute("aria-pressed", String(isFull));
+  at("full").textContent = isFull ? "Leave full screen" : "Full screen";
+});
+
+// What can be taken along.
+
+const stamp = () => `pxpl5-${pipelines().join("-and-")}-${Math.round(reached / 1e9)}ms`;
+
+function save(blob, name) {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** All pictures of all machines beside each other, with what lies over them. */
+at("save-picture").addEventListener("click", () => {
+  const all = machines.flatMap(({ eyes }) => eyes.slice(0, eyesShown));
+  const whole = document.createElement("canvas");
+  whole.width = all.reduce((sum, { canvas }) => sum + canvas.width, 0);
+  whole.height = Math.max(...all.map(({ canvas }) => canvas.height));
+  const context = whole.getContext("2d");
+  let left = 0;
+  for (const { canvas, over } of all) {
+    context.drawImage(canvas, left, 0);
+    context.drawImage(over, left, 0);
+    left += canvas.width;
+  }
+  whole.toBlob((blob) => save(blob, `${stamp()}.png`));
+});
+
+/** What was not measured is null. */
+function report() {
+  return {
+    machines: pipelines().map((name, n) => {
+      const { state, age, latencies, surfaces } = seenLast.machines[n];
+      return {
+        settings: settingsOf(name),
+        time_ms: state.now_ps / 1e9,
+        field: state.field,
+        trace_hash: state.trace_hash,
+        config_hash: state.config_hash,
+        failure: state.failure,
+        shown_picture: age,
+        latency_parts_ms: latencies,
+        difference_from_ideal: surfaces.map((surface, eye) => ({ eye: state.surfaces[eye].label, ...(surface.difference ?? { differing_percent: null, mean_percent: null }) })),
+      };
+    }),
+    command: at("command").textContent.split("\n"),
+    link: at("link").href,
+  };
+}
+
+at("save-report").addEventListener("click", async () => {
+  pause();
+  await go({});
+  save(new Blob([JSON.stringify(report(), null, 2)], { type: "application/json" }), `${stamp()}.json`);
+});
+
+at("save-timeline").addEventListener("click", async () => {
+  pause();
+  at("timeline-part").open = true;
+  await go({});
+  save(new Blob([lastTimeline], { type: "image/svg+xml" }), `${stamp()}-timeline.svg`);
+});
+
+at("copy").addEventListener("click", async () => {
+  try {
+    await navigator.clipboard.writeText(at("link").href);
+    at("copied").textContent = "Copied.";
+  } catch {
+    at("copied").textContent = "The browser does not let this page copy: use the link's menu.";
+  }
+});
+
+// Stories.
+
+/** The story that is told, and its step. */
+let telling = null;
+/** Number of steps that were begun or left, by which a step sees that it is not the present one any more. */
+let turns = 0;
+/** Number of things that were waited for. */
+let watches = 0;
+
+const slowDown = (times) => {
+  at("slower").value = Math.log10(times);
+  at("factor").textContent = Math.round(slowness()).toLocaleString("en");
+};
+
+/** Has the head go on along a path that begins now. From where the head is it comes to the path bit by bit. */
+function move(path) {
+  if (!live || !path) return;
+  const [from, base] = [live.samples.length / 60, live.now.map((angle) => angle / 10)];
+  live.path = (seconds) => path(seconds - from).map((angle, n) => angle + base[n] * Math.exp(-2 * (seconds - from)));
+}
+
+/** Runs a step to where it stops: at the speed of the step, or at once. */
+async function perform(tale, number, isFast) {
+  const step = tale.steps[number];
+  move(step.path);
+  slowDown(step.slower ?? 1);
+  const end = reached + inPs(step.ms);
+  watches += 1;
+  const stop = step.until ? { what: step.until, value: step.value, key: watches } : null;
+  const later = inPs(step.then ?? 0);
+  if (!isFast) {
+    if (!(await run({ end, stop }))) return false;
+    if (step.thenSlower) slowDown(step.thenSlower);
+    return later > 0 ? run({ end: reached + later }) : true;
+  }
+  if (step.hand) return true;
+  await go(stop ? { to: end, stop: { ...stop, piece: 20e6 } } : { to: end });
+  if (later > 0) await go({ to: reached + later });
+  return true;
+}
+
+/** Builds the machines of a story and brings them to the begin of a step. */
+async function prepare(tale, number) {
+  settings = { ...tale.settings };
+  beside = tale.beside ?? "";
+  eyesShown = tale.eyes ?? 2;
+  show = new Set(tale.steps[number].show);
+  if (!(await build())) return false;
+  if (tale.begin) await go({ to: inPs(tale.begin) });
+  for (let before = 0; before < number; before += 1) {
+    await perform(tale, before, true);
+  }
+  return true;
+}
+
+async function tell(name, number, isNext = false) {
+  turns += 1;
+  const mine = turns;
+  const tale = STORIES[name];
+  const step = tale.steps[number];
+  mode = "story";
+  telling = { name, step: number };
+  document.documentElement.dataset.story = `${name} ${number + 1} begun`;
+  pause();
+  at("story-name").textContent = tale.name;
+  at("story-step").textContent = `${number + 1} of ${tale.steps.length}`;
+  at("story-title").textContent = step.title;
+  at("story-say").textContent = step.say;
+  at("story-paused").textContent = "";
+  at("story-back").disabled = number === 0;
+  at("story-next").textContent = number + 1 < tale.steps.length ? "Next" : "To the laboratory";
+  at("story-dots").replaceChildren(...tale.steps.map((_, n) => Object.assign(document.createElement("li"), { className: n === number ? "here" : "" })));
+  history.replaceState(null, "", `#story=${name}&step=${number + 1}`);
+  show = new Set(step.show);
+  layOutParts();
+  if (isNext) await piece;
+  else if (!(await prepare(tale, number))) return;
+  if (mine !== turns) return;
+  const isThere = await perform(tale, number, still.matches);
+  if (!isThere || mine !== turns) return;
+  await go({});
+  at("story-paused").textContent = step.paused;
+  document.documentElement.dataset.story = `${name} ${number + 1} paused`;
+}
+
+function toLab() {
+  turns += 1;
+  const wasStart = mode === "start";
+  mode = "lab";
+  telling = null;
+  eyesShown = 2;
+  if (live) live.path = null;
+  slowDown(1);
+  machines.forEach(({ section }) => (section.dataset.eyes = eyesShown));
+  if (wasStart) pause();
+  intoForm();
+  layOutParts();
+  remember();
+  pause();
+  return go({});
+}
+
+async function toStart() {
+  turns += 1;
+  mode = "start";
+  telling = null;
+  show = new Set();
+  eyesShown = 1;
+  settings = { ...FIRST_SCREEN.settings };
+  beside = "";
+  layOutParts();
+  slowDown(1);
+  if (!(await build())) return;
+  live.path = FIRST_SCREEN.path;
+  if (still.matches) return go({ to: inPs(900) });
+  first();
+}
+
+/** Runs the picture of the first screen, and again from the begin after its minute. */
+async function first() {
+  const mine = turns;
+  await run();
+  if (mode !== "start" || mine !== turns || !seenLast?.machines[0].state.over) return;
+  toStart();
+}
+
+for (const button of document.querySelectorAll("[data-story]")) {
+  button.addEventListener("click", async () => {
+    await tell(button.dataset.story, 0);
+  });
+}
+at("story-next").addEventListener("click", () => {
+  if (!telling) return;
+  const { name, step } = telling;
+  if (step + 1 < STORIES[name].steps.length) tell(name, step + 1, true);
+  else toLab();
+});
+at("story-back").addEventListener("click", () => telling && telling.step > 0 && tell(telling.name, telling.step - 1));
+at("story-again").addEventListener("click", () => telling && tell(telling.name, telling.step));
+for (const id of ["to-lab", "to-lab-too"]) at(id).addEventListener("click", toLab);
+at("to-start").addEventListener("click", () => {
+  history.replaceState(null, "", location.pathname);
+  toStart();
+});
 
 async function open() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  const told = storyOf(given);
+  if (told) return tell(told.name, told.step);
+  if ([...given.keys()].length === 0) {
+    fromAddress();
+    return toStart();
+  }
+  mode = "lab";
+  turns += 1;
+  telling = null;
+  eyesShown = 2;
+  slowDown(1);
   settings = fromAddress();
   intoForm();
+  layOutParts();
   if (!(await build())) return;
-  const instant = Number(new URLSearchParams(location.hash.slice(1)).get("at"));
+  const instant = Number(given.get("at"));
   if (instant > 0) await go({ to: instant });
 }
 
-const { catalog, glossary } = await startWorker();
-const none = { name: "", label: "none" };
-choices("pipeline", catalog.pipelines);
-choices("beside", [none, ...catalog.pipelines]);
-choices("scene", catalog.scenes);
-choices("display", catalog.displays.map((name) => ({ name })));
-choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name === LIVE ? "live" : one.name || "scene's own" })));
-choices("head.tracker", [{ name: "", label: "usual" }, ...catalog.trackers.map((name) => ({ name }))]);
-choices("head.predict", [{ name: "", label: "usual" }, ...catalog.predictors.map((name) => ({ name }))]);
-choices("level", [{ name: "", label: "transaction" }, { name: "cycle", about: glossary["cycle level"] }]);
-explain(glossary);
-await open();
-addEventListener("hashchange", open);
-document.documentElement.dataset.ready = "true";
+try {
+  const { catalog, glossary } = await startWorker();
+  const none = { name: "", label: "none" };
+  choices("pipeline", catalog.pipelines);
+  choices("beside", [none, ...catalog.pipelines]);
+  choices("scene", catalog.scenes);
+  choices("display", catalog.displays.map((name) => ({ name })));
+  choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name === LIVE ? "live: you move it" : one.name || "scene's own" })));
+  choices("head.tracker", [{ name: "", label: "usual" }, ...catalog.trackers.map((name) => ({ name }))]);
+  choices("head.predict", [{ name: "", label: "usual" }, ...catalog.predictors.map((name) => ({ name }))]);
+  choices("level", [{ name: "", label: "transaction" }, { name: "cycle", about: glossary["cycle level"] }]);
+  explain(glossary);
+  at("loading").hidden = true;
+  document.documentElement.dataset.ready = "true";
+  addEventListener("hashchange", open);
+  await open();
+} catch (error) {
+  cannotStart(error.message);
+}

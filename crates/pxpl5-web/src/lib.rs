@@ -18,6 +18,7 @@
 
 mod catalog;
 mod code;
+mod diagram;
 mod files;
 mod glossary;
 mod look;
@@ -120,6 +121,33 @@ impl WebMachine {
         look::boards(self.0.stepper()).to_string()
     }
 
+    /// Returns the messages that began after an instant in picoseconds as JSON, at most `most`. If there are more, every
+    /// n-th is returned.
+    #[must_use]
+    pub fn messages(&self, after_ps: f64, most: usize) -> String {
+        diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
+    }
+
+    /// Returns the regions that renderers are sending to displays, as JSON.
+    #[must_use]
+    pub fn regions(&self) -> String {
+        diagram::regions(self.0.stepper()).to_string()
+    }
+
+    /// Returns the age of the shown picture as JSON: the milliseconds since its pose was sampled. `null` before the
+    /// first picture.
+    #[must_use]
+    pub fn age(&self) -> String {
+        diagram::age(self.0.stepper()).to_string()
+    }
+
+    /// Returns the outlines of the ideal picture of a surface for the present instant, as bytes with transparency.
+    /// Empty if the surface has no ideal picture.
+    #[must_use]
+    pub fn outlines(&self, surface: u16) -> Vec<u8> {
+        self.0.outlines(surface)
+    }
+
     /// Returns a description of one board (`gp 3`, `renderer 0`, `host`), one fact a line.
     ///
     /// # Errors
@@ -169,10 +197,10 @@ impl WebMachine {
         pictures::renderer(self.0.stepper(), renderer)
     }
 
-    /// Returns the six faces of a display memory for an eye, 0 or 1, as a cross of 512 x 384 pixels. Empty without such
-    /// a memory.
+    /// Returns the six faces of a display memory for an eye, 0 or 1, as a cross of 512 x 384 pixels. Without a number,
+    /// the memories are joined: each texel is the nearest of all. Empty without such a memory.
     #[must_use]
-    pub fn faces(&self, eye: usize, memory: usize) -> Vec<u8> {
+    pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
     }
 

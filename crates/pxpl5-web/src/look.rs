@@ -1,6 +1,7 @@
 //! State of the machine as JSON and SVG for the page.
 
 use crate::code;
+use crate::diagram;
 use crate::pictures;
 use pxpl5_machine::Board;
 use pxpl5_run::{LATENCY_PARTS, Stepper};
@@ -54,15 +55,18 @@ fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
         Board::Renderer(number) => {
             let look = stepper.renderer(number);
             let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
-            let works = fifo > 0 || look.is_some_and(|look| look.copying.is_some());
+            let copies = look.is_some_and(|look| look.copying.is_some());
+            let works = fifo > 0 || copies;
+            let stage = if copies { Some("copy") } else { (fifo > 0).then_some("render") };
             let depth = look.map_or(0, |look| look.fifo_depth_words);
-            json!({"name": name, "kind": "renderer", "does": says, "works": works, "fifo": fifo, "depth": depth})
+            json!({"name": name, "kind": "renderer", "does": says, "works": works, "stage": stage, "fifo": fifo, "depth": depth})
         }
         Board::Display(_) | Board::Ring => json!({"name": name, "kind": "display", "does": says, "works": true}),
         Board::Host | Board::Gp(_) => {
             let look = stepper.processor(board);
             let works = look.is_some_and(|look| look.programs.iter().any(|program| program.work_left.is_some()));
-            json!({"name": name, "kind": "processor", "does": says, "works": works})
+            let stage = diagram::stage(stepper, board);
+            json!({"name": name, "kind": "processor", "does": says, "works": works, "stage": stage})
         }
     }
 }

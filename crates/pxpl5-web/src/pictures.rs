@@ -1,7 +1,8 @@
 //! Pictures as bytes of a canvas: red, green, blue and 255 for each pixel, row by row.
 
-use address_recalculation::{AddressRecalculationPipeline, CubeFace, TexelAddress};
+use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, TexelAddress};
 use image::RgbImage;
+use pxpl5_oracle::IdealPicture;
 use pxpl5_renderer::PixelArray;
 use pxpl5_run::{Stepper, bit_of};
 use pxpl5_wire::{Eye, REGION_SIZE, SurfaceId};
@@ -101,22 +102,58 @@ pub(crate) fn memories(stepper: &Stepper) -> usize {
 }
 
 /// Returns the six faces that a display memory shows to an eye now, as a cross. Each face has [`FACE_SIDE`] pixels a
-/// side. Returns `None` for a memory that does not exist.
-pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: usize) -> Option<Vec<u8>> {
+/// side. Without a number, the memories are joined: each texel is the nearest one of all memories. Returns `None` for a
+/// memory that does not exist.
+pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
-    let faces = display.memories(eye).get(memory)?.shown_faces();
-    let step = faces.texels() / FACE_SIDE;
+    let all = display.memories(eye);
+    let some = match memory {
+        Some(number) => std::slice::from_ref(all.get(number)?),
+        None => all,
+    };
+    let some: Vec<_> = some.iter().map(DisplayMemory::shown_faces).collect();
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
     for (face, column, row) in CROSS {
-        // Sample the face at the resolution of the cross.
+        // Sample each face at the resolution of the cross.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
-            let texel = TexelAddress { face, column: x * step, row: y * step };
-            let colour = faces.texel(texel).map_or(0, |(colour, _)| colour);
+            let texels = some.iter().filter_map(|faces| {
+                let step = faces.texels() / FACE_SIDE;
+                faces.texel(TexelAddress { face, column: x * step, row: y * step })
+            });
+            let colour = texels.min_by_key(|(_, depth)| *depth).map_or(0, |(colour, _)| colour);
             let [_, red, green, blue] = colour.to_be_bytes();
             cross.put_pixel(column * FACE_SIDE + x, row * FACE_SIDE + y, image::Rgb([red, green, blue]));
         }
     }
     Some(rgba(&cross))
+}
+
+/// Colour of outlines, which differs from those of the built-in scenes.
+const OUTLINE: [u8; 3] = [255, 196, 61];
+
+/// Smallest bend of the depth that makes an outline, in steps of 24 bits. Within a plane triangle the depth is linear on
+/// the screen, so that it bends only by rounding.
+const BEND: i64 = 24;
+
+/// Returns a wire frame of what an ideal picture shows, as bytes. A pixel is opaque where the depth bends, which is at
+/// edges between triangles and at the rim of objects. All other pixels are transparent.
+pub(crate) fn outlines(picture: &IdealPicture) -> Vec<u8> {
+    let [width, height] = [picture.image().width() as usize, picture.image().height() as usize];
+    let depths = picture.depths();
+    let mut bytes = vec![0; 4 * width * height];
+    for y in 1..height.saturating_sub(1) {
+        for x in 1..width.saturating_sub(1) {
+            let at = y * width + x;
+            let bends = |step: usize| {
+                let [before, here, after] = [at - step, at, at + step].map(|at| i64::from(depths[at]));
+                (before + after - 2 * here).abs() > BEND
+            };
+            if bends(1) || bends(width) {
+                bytes[4 * at..4 * at + 4].copy_from_slice(&opaque(OUTLINE));
+            }
+        }
+    }
+    bytes
 }
 
 #[cfg(test)]
@@ -129,5 +166,38 @@ mod tests {
         assert_eq!(heat(85), [255, 0, 0]);
         assert_eq!(heat(170), [255, 255, 0]);
         assert_eq!(heat(255), [255, 255, 255]);
+    }
+
+    fn session(settings: &str, to_ps: u64) -> crate::session::Session {
+        let mut session = crate::session::Session::new(settings, &crate::files::Files::default()).expect("known");
+        session.run_to(to_ps);
+        session
+    }
+
+    /// The depth of a plane is linear on the screen, so that it bends nowhere.
+    #[test]
+    fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
+        let opaque =
+            |session: &crate::session::Session| session.outlines(0).chunks(4).filter(|rgba| rgba[3] > 0).count();
+        let plane = session("pipeline=slats\nscene=full-screen:1\nfields=9", 1);
+        assert_eq!(plane.outlines(0).len(), 4 * 640 * 480);
+        assert_eq!(opaque(&plane), 0);
+        let aircraft = session("pipeline=slats\nscene=aircraft\nfields=9", 1);
+        assert!((100..20_000).contains(&opaque(&aircraft)), "{}", opaque(&aircraft));
+        assert!(aircraft.outlines(9).is_empty());
+    }
+
+    #[test]
+    fn joined_faces_are_lit_where_any_memory_is_lit() {
+        let session = session("pipeline=arp-priority\ndisplay=arp\nscene=aircraft\nfields=60", 500_000_000_000);
+        let joined = faces(session.stepper(), Eye::Left, None).expect("a display with faces");
+        let is_lit = |rgba: &[u8]| rgba[..3] != [0, 0, 0];
+        for memory in 0..memories(session.stepper()) {
+            let one = faces(session.stepper(), Eye::Left, Some(memory)).expect("a memory");
+            let lost =
+                one.chunks(4).zip(joined.chunks(4)).filter(|(one, joined)| is_lit(one) && !is_lit(joined)).count();
+            assert_eq!(lost, 0, "memory {memory}");
+        }
+        assert!(faces(session.stepper(), Eye::Left, Some(99)).is_none());
     }
 }

@@ -110,7 +110,11 @@ impl Session {
         Difference::of(&self.stepper, SurfaceId(surface))
     }
 
-    pub(crate) fn faces(&self, eye: usize, memory: usize) -> Vec<u8> {
+    pub(crate) fn outlines(&self, surface: u16) -> Vec<u8> {
+        self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| pictures::outlines(&picture)).unwrap_or_default()
+    }
+
+    pub(crate) fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         let faces = Eye::BOTH.get(eye).and_then(|eye| pictures::faces(&self.stepper, *eye, memory));
         faces.unwrap_or_default()
     }

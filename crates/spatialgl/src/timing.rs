@@ -15,7 +15,7 @@ parameters::parameter_table! {
         /// Vertex transformation rate of the GPU.
         vertex_mvertices: 600, "Mvertex/s", Published, 600..=600 in 1..=MAX, "GeForce 6800 Ultra";
         /// Transfer rate for reading back from the GPU, and also for sending to the projector.
-        readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP writes back slowly";
+        readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP has a low rate from the GPU to the host";
         /// Time of one occlusion query in addition to its fill.
         query_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
         /// Time of the driver calls for one pass of one slice.

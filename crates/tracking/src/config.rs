@@ -108,11 +108,11 @@ parameter_table! {
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
         /// Gain a of the Fastrak's filter x' = a x + (1 - a) x'. The filter adds a delay of dt (1 - a) / a, where dt is
         /// the time between measurements. A gain of 1 turns the filter off.
-        filter_gain: f64 = 1.0, "1", Assumed, 0.05..=1.0 in 0.000001..=1.0, "PF describes the filter: 4.2 ms of apparent latency at 0.95, 162 ms at 0.05; that it is off is assumed";
+        filter_gain: f64 = 1.0, "1", Assumed, 0.05..=1.0 in 0.000001..=1.0, "PF describes the filter, with an apparent latency of 4.2 ms at 0.95 and of 162 ms at 0.05; the project assumes that the filter is off";
         /// Position noise of the Fastrak from report to report, rms of each axis.
-        position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives none: less than its static accuracy";
+        position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives no value; assumed below the tracker's static accuracy";
         /// Orientation noise of the Fastrak from report to report, rms about each axis.
-        orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives none: less than its static accuracy";
+        orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives no value; assumed below the tracker's static accuracy";
         /// Static position error of the Fastrak, rms of each axis: a bias, the same in every report of a run.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
         /// Static orientation error of the Fastrak, rms about each axis: a bias, the same in every report of a run.

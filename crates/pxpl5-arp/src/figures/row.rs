@@ -100,9 +100,9 @@ impl Row {
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {
-            "A8" => "No interpretation of size and distance gives so much.",
+            "A8" => "No interpretation of size and distance gives such a large factor.",
             "A12" => {
-                "Scene, path, rings and threshold are not printed; the one number that is fitted is that of memory 1."
+                "The paper does not print its scene, path, rings and threshold. The only fitted number is the rate of memory 1."
             }
             _ => "The cause is not known.",
         }

@@ -18,8 +18,8 @@ use std::path::PathBuf;
   pxpl5 arp compare
   pxpl5 arp compare --scene gallery:full --set walk.m_per_s=2 --out out/policies --json
 
-Options of policy, segment and warp say nothing here: every variant is walked. One that cannot be walked is named, and the others are
-kept.")]
+The options for policy, segments and warping have no effect, because the command walks every variant. If a variant fails, the command
+names it and keeps the results of the others.")]
 pub(super) struct CompareArgs {
     #[command(flatten)]
     walk: WalkArgs,

@@ -17,7 +17,7 @@ use std::path::PathBuf;
   pxpl5 arp figures --json
   pxpl5 arp figures --out out/arp                               all pictures
   pxpl5 arp figures --write docs/address-recalculation.md
-  pxpl5 arp figures --check docs/address-recalculation.md       fails when the file is not what the figures give")]
+  pxpl5 arp figures --check docs/address-recalculation.md       fails if the file is out of date")]
 pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]

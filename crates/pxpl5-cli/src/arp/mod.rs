@@ -22,7 +22,7 @@ use pxpl5::arp::ExperimentError;
   pxpl5 arp interpretations
   pxpl5 arp texel 0 0 --yaw 30
 
-Faces are drawn by an ideal renderer here. `pxpl5 run --pipeline arp-priority` has Pixel-Planes 5 draw them.")]
+These commands use an ideal renderer for the faces. With `pxpl5 run --pipeline arp-priority`, Pixel-Planes 5 draws the faces.")]
 pub(crate) struct ArpArgs {
     #[command(subcommand)]
     command: ArpCommand,

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
   pxpl5 arp run --warp none --set walk.hall_scale=0.5 --set walk.frames=7200
   pxpl5 arp run --set priority.ring_growth=1 --set priority.threshold=1texel --set priority.cell_m=5
   pxpl5 arp run --lens radial:0.32 --latch line --set arp.face_texels=1024
-  pxpl5 arp run --source 20000                             a renderer of 20,000 triangles a second")]
+  pxpl5 arp run --source 20000                             a renderer that draws 20,000 triangles per second")]
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,

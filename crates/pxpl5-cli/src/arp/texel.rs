@@ -15,7 +15,7 @@ use std::fmt::Write as _;
   pxpl5 arp texel 0 0 --yaw 30
   pxpl5 arp texel 320 240 --pitch 60 --lens radial:0.32 --set arp.face_texels=256 --json
 
-Angles are degrees: yaw to the left about the upright axis, then pitch up, then roll to the left.")]
+Angles are in degrees. The rotations are yaw to the left about the upright axis, then pitch up, then roll to the left.")]
 pub(super) struct TexelArgs {
     /// Column of the pixel from the left.
     x: u32,

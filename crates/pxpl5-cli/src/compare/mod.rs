@@ -29,8 +29,8 @@ use std::time::Instant;
   pxpl5 compare --all --limits --confidence 0.99
   pxpl5 compare --only slats,vdrt,jitp-scanline-racing --head pan:200
 
-Every pipeline gets the same settings, a run for each seed. A head of `synthetic` moves otherwise in every one of them. Pipelines have the
-values of their papers; to run one of them alone, with its own keys and pictures: pxpl5 run --pipeline jitp-scanline-racing.")]
+Every pipeline has the same settings and one run for each seed. With the head `synthetic`, each seed gives another motion. The pipelines
+have the values of their papers. The command `pxpl5 run --pipeline NAME` runs one pipeline alone, with its own keys and pictures.")]
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,

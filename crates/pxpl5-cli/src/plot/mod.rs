@@ -27,8 +27,8 @@ use std::path::{Path, PathBuf};
   pxpl5 plot out/gps --x machine.n_gps --y latency_fields.mean --band seed --by pipeline --out fig.svg
   pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.svg
 
-What varies and is named by neither --x, --by nor --band is an error. What was not judged is no 0: such rows are counted in the column
-`missing`, and a place without any number is not drawn.")]
+An axis that varies must be named by --x, --by or --band; otherwise, the command fails. A row without a result does not count as 0. The
+column `missing` counts such rows, and a point without any number is not drawn.")]
 pub(crate) struct PlotArgs {
     /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]

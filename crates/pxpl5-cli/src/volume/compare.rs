@@ -20,7 +20,7 @@ use std::path::PathBuf;
   pxpl5 volume compare --scene mig
   pxpl5 volume compare --scene head --out out/head --json
 
-The options of clip, projection, samples and coverage say nothing here but their numbers: every variant is drawn.")]
+The command draws every variant of clip, projection, samples and coverage. Of these options, only the numbers have an effect.")]
 pub(super) struct CompareArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,

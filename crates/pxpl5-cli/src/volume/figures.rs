@@ -21,7 +21,7 @@ use std::sync::Arc;
   pxpl5 volume figures --json
   pxpl5 volume figures --out out/figures                  its figures 4 to 12, redrawn from the model
   pxpl5 volume figures --write docs/volumetric.md
-  pxpl5 volume figures --check docs/volumetric.md         fails when the file is not what the figures give")]
+  pxpl5 volume figures --check docs/volumetric.md         fails if the file is out of date")]
 pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]

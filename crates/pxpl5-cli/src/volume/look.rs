@@ -44,8 +44,8 @@ struct EyeArgs {
   pxpl5 volume view --scene mig --undithered --lambert --out undithered.png
   pxpl5 volume view --scene mig --head synthetic:1 --seconds 4 --latency 60 --out out/head
 
-With --head, DIR gets report.json, errors.csv, errors.svg and eyes.png, a film: above what the left and the right eye see of the
-volume, below what a head-mounted display of that latency would show them.")]
+With --head, the command writes report.json, errors.csv, errors.svg and the film eyes.png to DIR. The upper half of the film shows the
+volume as seen by the left and the right eye. The lower half shows the pictures of a head-mounted display with the given latency.")]
 pub(super) struct ViewArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,

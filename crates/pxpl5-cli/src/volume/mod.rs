@@ -23,7 +23,7 @@ use pxpl5::volume::VolumeError;
   pxpl5 volume compare --scene mig --out out/variants
   pxpl5 volume figures
 
-The display draws no picture for an eye: everything within a slice is lit, and an eye anywhere sees the sum of one turn.")]
+The display does not draw a picture for one eye. It lights everything within a slice, and an eye at any position sees the sum of one turn.")]
 pub(crate) struct VolumeArgs {
     #[command(subcommand)]
     command: VolumeCommand,

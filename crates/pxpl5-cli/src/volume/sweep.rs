@@ -33,8 +33,9 @@ use std::time::Instant;
   pxpl5 volume sweep experiments/volumes/sweep.toml --out out/volumes --resume     after an interruption
   pxpl5 volume sweep experiments/volumes/sweep.toml --out out/one --shard 1/4      one of four shares; see `pxpl5 merge`
 
-The file has `scene`, `triangles`, `title`, `measure` (numbers of the report pxpl5-volume/1, such as lit_voxels or model_ms.gpu.ms),
-any setting by its path, and [sweep.grid], [sweep.together] and sweep.seeds as files of `pxpl5 sweep`.")]
+The file has `scene`, `triangles`, `title`, `measure` and any setting by its path. The key `measure` lists numbers of the report
+pxpl5-volume/1, such as lit_voxels or model_ms.gpu.ms. The tables [sweep.grid] and [sweep.together] and the key sweep.seeds are those of
+files for `pxpl5 sweep`.")]
 pub(super) struct SweepArgs {
     /// File with a table `sweep`.
     #[arg(value_name = "FILE")]

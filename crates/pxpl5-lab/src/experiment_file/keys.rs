@@ -94,7 +94,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     // One key for each column of a recording.
     all.extend(Columns::fields().map(|field| FileKey {
         path: format!("{COLUMNS}{field}"),
-        about: "name or number of the column of a recording that holds it; _ms, _us, _ns and _mm are units, else s and m".to_owned(),
+        about: "name or number of the column of a recording; _ms, _us, _ns and _mm give the unit, which is otherwise s or m".to_owned(),
         applies_to: Vec::new(),
     }));
     // Keys of pipelines state the families to which they apply.

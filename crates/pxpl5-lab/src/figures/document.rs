@@ -35,10 +35,11 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
         "\n## Times of primitives from the code instead\n\n\
-         The timing table above has published or fitted times of primitives: 21.7 us for a triangle of optimised PPHIGS (published\n\
-         rate), 30.0 and 55.8 us for the Slats of 1994 and 1995 (fitted to figures 12 and 14). `machine.times = \"code\"` takes instead\n\
-         what our i860 code takes, as a mean over the application scenes (docs/gp-timing.md), with nothing fitted. Figures that\n\
-         differ, at the transaction level:\n\n\
+         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of Slats, the\n\
+         table takes 30.0 us in 1994 and 55.8 us in 1995. These two times were fitted to figures 12 and 14.\n\n\
+         With `machine.times = \"code\"`, the simulator takes the times that the project's own i860 code needs. Each time is a mean\n\
+         over the application scenes, and no time is fitted. The page docs/gp-timing.md describes the measurement. The table below\n\
+         lists the figures that differ, at the transaction level.\n\n\
          | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
     );
     // Figures that do not depend on the times are left out.
@@ -60,12 +61,13 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     }
     let _ = write!(
         text,
-        "\nMean error of the free checks: {:.1} % with the table, {:.1} % with the code (a figure without value counts 100 %). Most\n\
-         moved are the limits of Slats, whose code takes other times than those that were fitted to them. No triangle of these figures is\n\
-         clipped.\n\
-         The published and fitted table stays the default: two of its three times are what the papers' limits of triangles say\n\
-         of their own code, whose source nobody has; ours is other code for the same processor, under rules of freezing and memory\n\
-         that are assumed in part. What it shows is how far a program of that time explains the figures without a fit.\n",
+        "\nThe mean error of the free checks is {:.1} % with the table and {:.1} % with the code. A figure without a value counts 100 %.\n\
+         The limits of Slats change most, because the project's code needs other times than the fitted ones. No triangle of these\n\
+         figures is clipped.\n\n\
+         The published and fitted table stays the default. Two of its three times follow from the limits of triangles in the papers.\n\
+         These limits describe the code of the papers, and its source code is not available. The project's code is different code\n\
+         for the same processor, and some of its rules of freezing and memory are assumed. The comparison shows how well the project's\n\
+         code explains the figures without a fit.\n",
         mean_error_percent(rows),
         mean_error_percent(of_code),
     );
@@ -83,14 +85,22 @@ fn of_readings(text: &mut String, readings: &Readings) {
     let place = |reading: &Reading| fits.iter().position(|fit| fit.reading == *reading).map_or(0, |place| place + 1);
     let _ = write!(
         text,
-        "\n## Readings: what the papers leave open\n\n\
-         Whose latency a printed mean is of, how fields were counted, how many finished regions a renderer keeps, what the\n\
-         master does with it meanwhile, which machine drew the application scenes, whether back faces were culled, and whether\n\
-         the bins were full with one eye's triangles or with both: {} combinations, each with one machine for all figures,\n\
-         at the analytic level (`pxpl5 readings` measures the best ones with events too). *Mean* and *worst* are errors in\n\
-         percent; *log L* the logarithm of the likelihood of the printed means and deviations with an error of 2 % for what no\n\
-         paper gives. The figures of theory (3 and 5) are derived from the rules, not measured, so they are compared with the\n\
-         rules alone and tell no reading from another; nor do 4b and 17.\n\n\
+        "\n## Interpretations: questions that the papers leave open\n\n\
+         The papers leave seven questions open:\n\n\
+         - Does a printed mean latency average the first eyes of the frames, or all eyes?\n\n\
+         - Is a latency in fields an exact time, or a whole number of retraces?\n\n\
+         - How many finished regions does a renderer keep?\n\n\
+         - Does the master wait while the frame buffer is not available, or does it assign the next region?\n\n\
+         - Which machine drew the application scenes?\n\n\
+         - Were back faces culled?\n\n\
+         - Were the bins full with the triangles of one eye, or with the triangles of both eyes?\n\n\
+         The answers give {} combinations, which this section calls interpretations. Each interpretation has one machine for all\n\
+         figures. The table has results of the analytic level. The command `pxpl5 readings` also measures the best interpretations\n\
+         with events.\n\n\
+         The columns *mean* and *worst* are errors in percent. The column *log L* is the logarithm of a likelihood. It is the likelihood\n\
+         of the printed means and deviations. Its error model allows 2 % for the conditions that the papers do not give.\n\n\
+         Figures 3 and 5 are theory, because the paper derives them from the rules. The table therefore compares figures 3 and 5 with\n\
+         the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation from another.\n\n\
          | mean | worst | log L | {} | reading |\n|---|---|---|{}---|\n",
         fits.len(),
         readings::FIGURES.join(" | "),
@@ -100,16 +110,20 @@ fn of_readings(text: &mut String, readings: &Readings) {
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
-        "\nChosen: **{}**, number {} of them. The likeliest of all is {:.1} times as likely;\n\
-         {} readings are as good as the first one within the digits that the papers print ({:.2} % of a mean error). What decides:\n\n\
-         - *each eye, whole fields*: the application figures are printed in fields, and a mean of 4.47 with a deviation of 0.502 is\n  \
-           what samples of 4 and 5 give, half and half (4.61 with 0.589 needs a few of 6). The first eyes alone deviate by 0.1.\n\
-         - *room for all*: 4,096 bits a pixel hold 128 regions of 32 bits; a smaller number would have to be a rule of the software.\n\
-         - *wait*: with room for all, `store` makes figure 4 6 % late and `wait` 1 to 2 %; the text reads either way.\n\
-         - *large, culled*: on the small machine, or with all faces, the head takes twice the printed time.\n\
-         - *bins of one eye*: else 7,700 triangles take 454 ms for the printed 293. No text says so; it is chosen for figures 16b\n  \
-           and 16c and counts for no other.\n\n\
-         Each figure left out in turn and predicted by the reading that the others choose:\n\n\
+        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.1} times as likely.\n\
+         Within the printed digits, {} interpretations are as good as the first one ({:.2} % of a mean error).\n\n\
+         These reasons decide the choice:\n\n\
+         - *each eye, whole fields*: The application figures are printed in fields. Samples of 4 and 5 fields in equal numbers give\n  \
+           a mean of 4.5 and a deviation of 0.5. The paper prints a mean of 4.47 and a deviation of 0.502. The printed pair 4.61 and 0.589 also\n  \
+           needs a few samples of 6 fields. The first eyes alone have a deviation of 0.1.\n\n\
+         - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A smaller number of regions would need a rule of\n  \
+           the software.\n\n\
+         - *wait*: With room for all regions, `store` makes figure 4 6 % too late, and `wait` makes figure 4 1 to 2 % too late. The text\n  \
+           of the paper allows both rules.\n\n\
+         - *large, culled*: The head takes twice the printed time on the small machine, or if all faces are drawn.\n\n\
+         - *bins of one eye*: With bins of both eyes, 7,700 triangles take 454 ms instead of the printed 293 ms. No paper states this rule.\n  \
+           The rule was chosen for figures 16b and 16c, and it affects no other figure.\n\n\
+         The next table leaves out one figure at a time. The other figures choose the interpretation, which then predicts the figure.\n\n\
          | # | error | the others' choice |\n|---|---|---|\n",
         Reading::USUAL,
         place(&Reading::USUAL),
@@ -145,10 +159,13 @@ fn fitted(fit: &Fit) -> String {
 fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
-         The host of a viewer ran an application, which took its time before it asked for the next frame. No paper prints that time. The\n\
-         presets ask at once. Here it moves (`host.application_ns`, `host.application_jitter_ns`) up to 40 ms, spread by up to the 30 ms in which\n\
-         a Unix host polls its serial lines (TR94); both ends are assumed. Mean latency in fields, with the deviation in brackets, at the\n\
-         analytic level. Nothing is fitted. What fits between two frames of 33.4 ms changes nothing, since the host is a frame ahead.\n\n\
+         The host of a viewer ran an application. For each frame, the application took some time before it asked for the next frame.\n\
+         No paper prints this time, and the presets set it to zero. The parameters `host.application_ns` and\n\
+         `host.application_jitter_ns` set the time and its spread.\n\n\
+         The table varies the mean time from 0 to 40 ms and the spread from 0 to 30 ms. A Unix host polls its serial lines every 30 ms\n\
+         (TR94). Both maxima are assumed. The table gives the mean latency in fields at the analytic level, with the deviation in\n\
+         brackets. No number is fitted. An application that always fits between two frames of 33.4 ms\n\
+         hardly changes the latency, because the host is a frame ahead.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
     let cells = |figures: &[Spread]| {
@@ -169,10 +186,10 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
     let _ = write!(
         text,
         "\n## Which parameter moves which figure\n\n\
-         Every derived or assumed parameter moved to the ends of its range, one at a time, and {SAMPLES} machines with\n\
-         all of them drawn from their ranges; then every open question of the papers answered otherwise, one at a time (*rules*).\n\
-         All at the analytic level. In brackets the figure at the low and the high\n\
-         end, then the elasticity (relative change of the figure over relative change of the parameter).\n\n\
+         The column *one at a time* sets each derived or assumed parameter to both ends of its range. The column *joint* draws all\n\
+         parameters of {SAMPLES} machines from their ranges. The column *rules* changes one answer to an open question of the papers at a\n\
+         time. All results come from the analytic level. The brackets give the figure at the low end and at the high end of the range,\n\
+         and then the elasticity. The elasticity is the relative change of the figure divided by the relative change of the parameter.\n\n\
          | # | one at a time | joint | 5 % to 95 % | moved by | rules |\n|---|---|---|---|---|---|\n"
     );
     // Only the strongest parameters of each figure are listed.
@@ -201,21 +218,28 @@ fn head(text: &mut String, rows: &[FigureRow]) {
     let _ = write!(
         text,
         "# Accuracy\n\n\
-         Generated by `pxpl5 figures --write ACCURACY.md`; `pxpl5 figures --check ACCURACY.md` fails when it is stale.\n\n\
-         Every published figure beside what the model gives, all from the same machine parameters. *Free*: nothing was\n\
-         chosen so that the figure comes out. *Fitted*: a parameter was. *Rule*: a rule of the model was. A *miss* is\n\
-         outside of the printed range, or off by more than {MISS_PERCENT} % where none is printed. In brackets behind a simulated value:\n\
-         least and greatest over a condition that the paper does not print. The error is that of the condition that is assumed; a\n\
-         *miss* is one for every value of the condition.\n\n\
-         The interval is what the figure does when parameters that are not published move within their allowed ranges, and when\n\
-         what the papers leave open is read otherwise (see Readings). It is\n\
-         computed at the analytic level and stands as computed; *analytic* is that level with the presets' numbers, so that\n\
-         its distance from *simulated* is the level's own error. A figure is *out of reach* when it lies outside of the\n\
-         interval even if this is widened by that distance on both sides: an error of the model's rules, not of a number.\n\
-         A figure that is *not varied* is a property of the scenes or of a motion, which no parameter moves. The intervals of figures 17,\n\
-         19 and 19b are measured with events: the depth of a renderer's FIFO and the channels of a sender move in them, in that of 17 the\n\
-         photodiode's place on the screen and the readings too.\n\n\
-         {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
+         The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md` fails\n\
+         if the file is out of date.\n\n\
+         This file compares each published figure with the result of the model. All results come from the same machine parameters.\n\
+         The column *standing* gives the provenance of each row:\n\n\
+         - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
+         - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
+         - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
+         A result outside of the printed range is a *miss*. If the paper prints no range, an error of more than {MISS_PERCENT} % is a miss.\n\n\
+         Some papers do not print a condition of an experiment. The brackets after the simulated value then give the minimum and the\n\
+         maximum over this condition. The error belongs to the assumed value of the condition. Such a figure is a miss only if every\n\
+         value of the condition misses the published figure.\n\n\
+         The column *interval* shows how the figure changes with the unpublished parameters and with the interpretation of the papers.\n\
+         The parameters vary within their allowed ranges. The section \"Interpretations\" lists the interpretations. The interval is\n\
+         computed at the analytic level. The column *analytic* gives the result of the analytic level with the numbers of the presets.\n\
+         The difference between *analytic* and *simulated* is the error of the analytic level.\n\n\
+         The interval can be widened on both sides by the error of the analytic level. A figure outside of the widened interval is\n\
+         *out of reach*. A figure out of reach shows an error in the rules of the model, because no allowed number reproduces the figure.\n\
+         A figure that is *not varied* depends only on the scenes or on a motion. No parameter changes such a figure.\n\n\
+         The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a renderer's\n\
+         FIFO and the number of channels of a sender. The interval of figure 17 also covers the positions of the photodiode on the screen\n\
+         and the interpretations.\n\n\
+         The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
          | # | figure | published | simulated | error | analytic | interval | standing |\n\
          |---|---|---|---|---|---|---|---|\n",
         rows.len(),
@@ -253,22 +277,24 @@ fn standing(row: &FigureRow) -> String {
 }
 
 fn misses(text: &mut String, rows: &[FigureRow]) {
-    let _ = writeln!(text, "\n## Misses, and what is known of their causes\n");
+    let _ = writeln!(text, "\n## Misses and their causes");
     for row in rows.iter().filter(|row| row.misses()) {
-        let cause = if row.cause.is_empty() { "the cause is not known" } else { row.cause };
-        let out =
-            if row.is_out_of_reach() { " A modelling error: no allowed parameter values give the figure." } else { "" };
-        let _ = writeln!(text, "- **{}**, {:+.1} %: {cause}.{out}", row.id, row.error_percent);
+        let cause = if row.cause.is_empty() { "The cause is not known" } else { row.cause };
+        let out = if row.is_out_of_reach() {
+            " This is a modelling error, because no allowed parameter values reproduce the figure."
+        } else {
+            ""
+        };
+        let _ = writeln!(text, "\n- Figure **{}** has an error of {:+.1} %. {cause}.{out}", row.id, row.error_percent);
     }
 }
 
 fn experiments(text: &mut String, rows: &[FigureRow]) {
-    let _ = writeln!(text, "\n## Experiments\n");
+    let _ = writeln!(text, "\n## Experiments\n\n| # | experiment | other results |\n|---|---|---|");
     for row in rows {
         let details: Vec<_> =
             row.details.iter().map(|d| format!("{} {} {}", d.name, number(d.value), d.unit)).collect();
-        let also = if details.is_empty() { String::new() } else { format!(" Also: {}.", details.join(", ")) };
-        let _ = writeln!(text, "- **{}**: {}.{also}", row.id, row.experiment);
+        let _ = writeln!(text, "| {} | {} | {} |", row.id, row.experiment, details.join(", "));
     }
 }
 

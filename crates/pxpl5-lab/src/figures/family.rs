@@ -65,17 +65,18 @@ impl FigureFamily {
         let _ = write!(
             text,
             "\n## {}\n\n\
-             Experiments E1 to E9 of the papers by Regan, Pose and Chow; [{}]({}) has what stands behind\n\
-             them, what follows from the tables alone, and E10, the pictures. E1 is Pixel-Planes 5 with that display, the others an ideal\n\
-             renderer. *Met* is within 1 %. Of {shapes} rows the conditions are not printed: they *cannot be reproduced*, and the shape of the\n\
-             papers' drawings and tables is checked instead. {} of the {} others are missed.\n\n{}\n{}",
+             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page [{}]({}) has the details.\n\
+             That page also has the numbers that follow from the tables alone, and the pictures of experiment E10. Experiment E1 runs on\n\
+             Pixel-Planes 5 with the display of address recalculation. The other experiments use an ideal renderer. A row is *met* if its\n\
+             error is at most 1 %. The papers do not print the conditions of {shapes} rows. These rows *cannot be reproduced*, so only the\n\
+             shape of the papers' drawings and tables is checked. The model misses {} of the {} other rows.\n\n{}\n{}\n",
             self.title,
             self.document,
             self.document,
             self.rows.iter().filter(|row| row.standing != Standing::Shape && !row.is_met).count(),
             self.rows.len() - shapes,
             table(&self.rows),
-            missed(&self.rows)
+            missed(&self.rows).trim_end()
         );
         text
     }

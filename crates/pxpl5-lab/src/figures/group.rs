@@ -57,7 +57,7 @@ impl FigureGroup {
     pub fn markdown(&self) -> String {
         let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| row.misses()).collect();
         let mut text = format!(
-            "\n## {}\n\n{}\n\n{} of {} rows are missed.\n\n\
+            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n\
              | # | figure | published | simulated | error | interval | |\n|---|---|---|---|---|---|---|\n",
             self.title,
             self.about,
@@ -65,20 +65,16 @@ impl FigureGroup {
             self.rows.len(),
         );
         self.rows.iter().for_each(|row| text.push_str(&line(row)));
-        if !missed.is_empty() {
-            text.push('\n');
-        }
         // Each miss is followed by its known cause.
         for row in missed {
-            let _ = writeln!(text, "- **{}**: {}", row.id, row.cause);
+            let _ = writeln!(text, "\n- Row **{}** is a miss. {}", row.id, row.cause);
         }
-        text.push('\n');
         // The experiments come last, for readers who want to repeat them.
+        let _ = writeln!(text, "\n| # | experiment | other results |\n|---|---|---|");
         for row in &self.rows {
             let also: Vec<_> =
                 row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
-            let also = if also.is_empty() { String::new() } else { format!(" Also: {}.", also.join(", ")) };
-            let _ = writeln!(text, "- **{}**: {}.{also}", row.id, row.experiment);
+            let _ = writeln!(text, "| {} | {} | {} |", row.id, row.experiment, also.join(", "));
         }
         text
     }

@@ -18,10 +18,10 @@ use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
-pub(super) const ABOUT: &str = "A head that turns by 200 degrees a second before a view of 60 degrees (JITP), with a tracker without error or \
-delay, so that only the instants of drawing and of light differ. Angles are measured on the screen between what a pixel shows and \
-what it should show when it lights. Pixels are the paper's, 600 over 60 degrees. Each angle is scaled from the pixels that are lit to the \
-whole field or line, retrace included, as the paper counts.";
+pub(super) const ABOUT: &str = "The head turns by 200 degrees a second before a view of 60 degrees (JITP). The tracker has no error and no delay, so \
+only the instants of drawing and of light differ. The error of a pixel is the angle on the screen between two directions. One direction is \
+what the pixel shows, and the other is what the pixel should show when it lights. Pixels are those of the paper, with 600 pixels \
+over 60 degrees. Like the paper, the model scales each angle from the lit pixels to the whole field or line, including the retrace.";
 
 /// Rate of a fast turn of the head in degrees a second (JITP).
 const PAN: f64 = 200.0;
@@ -46,9 +46,9 @@ pub(super) fn measurements() -> Vec<Measurement> {
         measure,
         moved_by: &[],
     };
-    let field = "jitp-field-racing on small-hmd, aimed at the first pixel: the last line of a field";
-    let line = "jitp-scanline-racing with strips of a line: both ends of the middle line";
-    let rounded = "the paper rounds the line to 65 us; NTSC has 63.56.";
+    let field = "jitp-field-racing runs on small-hmd with an aim at the first pixel. The error is that of the last line of a field.";
+    let line = "jitp-scanline-racing draws strips of one line. The error is that of both ends of the middle line.";
+    let rounded = "The paper rounds the time of a line to 65 us. A line of NTSC takes 63.56 us.";
     vec![
         row("J1", "error of one transform a field", (3.3, "deg", None), field, "", error_of_field),
         row("J1b", "the same", (33.0, "px", None), field, "", |bench| in_pixels(error_of_field(bench)?)),
@@ -58,7 +58,7 @@ pub(super) fn measurements() -> Vec<Measurement> {
             "J3",
             "a line takes about",
             (65.0, "us", Some(1.5)),
-            "time between the first pixels of two lines of a field",
+            "The result is the time between the first pixels of two lines of a field.",
             rounded,
             time_of_line,
         ),
@@ -66,8 +66,8 @@ pub(super) fn measurements() -> Vec<Measurement> {
             "J4",
             "share of the slant of a vertical edge that just-in-time pixels remove: seen straight",
             (100.0, "%", None),
-            "the plates: an edge drawn by jitp-field and by jitp-scanline, as an eye sees it that turns with the head; slants of the straight \
-             lines through all rows",
+            "An edge is drawn by jitp-field and by jitp-scanline, as seen by an eye that turns with the head. The result is the slant of a \
+             straight line through all rows.",
             "",
             slant_removed,
         ),
@@ -75,9 +75,9 @@ pub(super) fn measurements() -> Vec<Measurement> {
             "J5",
             "vertices transformed line by line, over those of one transform a field: about",
             (256.0, "times", None),
-            "jitp-scanline-racing and jitp-field-racing with one slave whose software costs no time, so that no line is late: \
-             vertices transformed in 20 fields",
-            "a field has 240 visible lines; the paper's is a round number, and nothing is drawn for the lines of the retrace.",
+            "Both jitp-scanline-racing and jitp-field-racing run with one slave. The software of the slave takes no time, so no line is late. The \
+             result is the number of vertices transformed in 20 fields.",
+            "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. The paper prints a round number.",
             transforms,
         ),
     ]

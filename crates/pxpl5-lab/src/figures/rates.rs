@@ -15,11 +15,11 @@ use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Peak rates";
 
-pub(super) const ABOUT: &str = "Rates of triangles are those of `typical:N`: right-angled triangles of 18 pixels that touch about 1.3 regions, \
-spread evenly, mono. J. Leech of the Pixel-Planes 5 team stated his rates on 3 April 1991 in sci.virtual-worlds, with more tuning \
-to come; he states neither the size of the machine nor that of the triangles. Intervals: the depth of the renderers' FIFO, \
-the channels of a sender, the channels for messages to FIFOs, and the times of a triangle on a processor and on a renderer, one at a time \
-at both ends of their ranges. All runs are by events.";
+pub(super) const ABOUT: &str = "The rates of triangles use the scene `typical:N` in mono. Its triangles are right-angled, have 18 pixels, touch about 1.3 \
+regions each, and are spread evenly. J. Leech of the Pixel-Planes 5 team stated his rates on 3 April 1991 in sci.virtual-worlds. He expected \
+more tuning, and he stated neither the size of the machine nor the size of the triangles.\n\n\
+The intervals set one parameter at a time to both ends of its range. The varied parameters are the depth of the renderers' FIFO, the channels \
+of a sender, and the channels for messages to FIFOs. The times of a triangle on a processor and on a renderer also vary. All runs use events.";
 
 /// Parameters that limit the rate of triangles of the machine and that no source gives.
 const OF_TRIANGLES: &[&str] = &[
@@ -44,15 +44,15 @@ pub(super) fn measurements() -> Vec<Measurement> {
 }
 
 fn of_machine() -> Vec<Measurement> {
-    let cause = "the heaviest of 20 regions decides, since each of 20 renderers has one, and a full FIFO holds a channel of the ring; the size \
-                 of the published machine and its triangles are not stated.";
+    let cause = "Each of the 20 renderers has one region, so the region with the most work decides the rate. A full FIFO also blocks a channel of the \
+                 ring. The source states neither the size of the machine nor its triangles.";
     vec![
         Measurement {
             figure: free(
                 ("R1", LEECH.0, LEECH.1),
                 "Gouraud triangles a second",
                 (1.6e6, "triangles/s", None),
-                "typical:40000 mono on large: triangles of a frame times frames a second",
+                "typical:40000 mono on large: the result is the number of triangles of a frame times the frames per second",
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "large", Shading::Gouraud),
@@ -84,9 +84,9 @@ fn of_machine() -> Vec<Measurement> {
 }
 
 fn of_boards() -> Vec<Measurement> {
-    let of_renderer = "typical:20000 mono on small-hmd with one renderer: commands, of which 997 in 1,000 are triangles, over the time in which the array works";
-    let of_array = "the published rate is a round number without shading model or machine state; the model's comes from the program of the \
-                    array, bit by bit.";
+    let of_renderer = "typical:20000 mono on small-hmd with one renderer: the result is the number of commands divided by the working time of the array. Of 1,000 commands, 997 are triangles.";
+    let of_array = "The published rate is a round number, and its source states neither the shading nor the state of the machine. The rate of the model \
+                    follows from the bit-serial program of the array.";
     vec![
         Measurement {
             figure: free(
@@ -115,9 +115,9 @@ fn of_boards() -> Vec<Measurement> {
                 ("R5", "F89", "processor"),
                 "triangles a second of a processor: 1 M over 32",
                 (31_250.0, "triangles/s", None),
-                "typical:2000 mono on small-hmd with one slave: triangles over the time of TRANSFORM",
-                "the design's rate of the whole machine over its processors; the optimised code of 1991 on is faster, which \
-                 `gp.triangle_ns` has from its own source.",
+                "typical:2000 mono on small-hmd with one slave: the result is the number of triangles divided by the time of TRANSFORM",
+                "The published figure is the design rate of the whole machine divided by its number of processors. The optimised code from 1991 is \
+                 faster. The parameter `gp.triangle_ns` has its own source, which describes the optimised code.",
             ),
             measure: processor_rate,
             moved_by: &["gp.triangle_ns", "gp.bin_entry_ns"],
@@ -127,8 +127,8 @@ fn of_boards() -> Vec<Measurement> {
                 ("R6", "I3D95", "pendulum"),
                 "tracker and rendering measured together from outside",
                 (90.0, "ms", None),
-                "the rig of figure 17 with the optical tracker on the bob: from the low point to the light under the photodiode",
-                "the photodiode's place on the screen and the detection of the low point are not published.",
+                "the rig of figure 17 with the optical tracker on the bob: the result is the time from the low point to the light under the photodiode",
+                "The position of the photodiode on the screen and the detection of the low point are not published.",
             ),
             measure: rig_total,
             moved_by: &["renderer.fifo_words", "ring.source_channels", PHOTODIODE_LINE],
@@ -138,7 +138,7 @@ fn of_boards() -> Vec<Measurement> {
                 ("R7", "i860PRM", "processor"),
                 "single-precision peak of the i860 at 40 MHz",
                 (80.0, "MFLOPS", None),
-                "100 turns of a loop of 256 pipelined multiply-adds, caches warm: operations over clocks; the loop itself takes the rest",
+                "The i860 runs 100 iterations of a loop of 256 pipelined multiply-adds with warm caches. The result is the number of operations per time. The loop instructions take the rest of the time.",
                 "",
             ),
             measure: |_| i860_peak(),

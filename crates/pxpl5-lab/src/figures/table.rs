@@ -84,7 +84,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "copy of both eyes in stereo",
         (31.2, "ms", None),
-        "full-screen:12 on small-hmd: COPY left and COPY right of a frame, each from its first word to its last",
+        "full-screen:12 on small-hmd: the time of COPY left plus COPY right of a frame, each from its first word to its last word",
         FREE,
     ),
     figure(
@@ -92,8 +92,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "stereo, trivial scene, theory: from the start of an eye's TRANSFORM to the end of its COPY",
         (50.0, "ms", None),
-        "full-screen:12 on small-hmd with software, transform and array that cost nothing, so that COPY is all there is; the rules \
-         alone: a renderer keeps all finished regions and gets the next one at once",
+        "full-screen:12 on small-hmd. Software, transform and array take no time, so COPY is the only work. The experiment uses the rules \
+         alone: a renderer keeps all finished regions and gets the next region at once.",
         FREE,
     ),
     figure(
@@ -110,8 +110,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
         (4004.0 / 60.0, "ms", None),
-        "full-screen:516 on small-hmd: as many triangles as take 15.6 ms of RENDER, and so slow on a GP that they take 15.6 ms of \
-         TRANSFORM, the time of COPY; the rules alone, as for figure 3; longest latency of a frame",
+        "full-screen:516 on small-hmd: RENDER of these triangles takes 15.6 ms, like COPY. The time of a triangle on a GP is set so that \
+         TRANSFORM also takes 15.6 ms. The experiment uses the rules alone, like figure 3. The result is the longest latency of a frame.",
         FREE,
     ),
     figure(
@@ -119,8 +119,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
         (98.4, "ms", Some(7.8)),
-        "full-screen:732 to 936 on small-hmd, as in figure 5: TRANSFORM and RENDER of 22 to 28 ms (mean 25 ms), COPY 15.6 ms: 75 + 15.6 to \
-         31.2; of a frame: TRANSFORM of its first eye and RENDER of both",
+        "full-screen:732 to 936 on small-hmd, like figure 5. TRANSFORM and RENDER take 22 to 28 ms (mean 25 ms), and COPY takes 15.6 ms. The \
+         expected latency is 75 ms + 15.6 to 31.2 ms. The latency of a frame includes TRANSFORM of its first eye and RENDER of both eyes.",
         FREE,
     ),
     figure(
@@ -128,8 +128,8 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "Mig, 417 triangles, fly-through in an HMD: mean latency (sd 0.589)",
         (4.61, "fields", Some(0.589)),
-        "mig on large without back faces: 10 seeds of head motion, 150 frames each; mean over both eyes of all frames, each in \
-         retraces from the start of its TRANSFORM",
+        "mig on large without back faces, 10 seeds of head motion with 150 frames each. The result is the mean over both eyes of all frames. \
+         Each latency is the number of retraces from the start of the eye's TRANSFORM.",
         FREE,
     ),
     figure(
@@ -153,20 +153,20 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "regions that a typical triangle touches, an eye",
         (1.3, "regions", None),
-        "mig, molecules and head over 20 s of their head motions: entries of all bins per triangle on the screen",
+        "mig, molecules and head during 20 s of their head motions: the result is the number of entries of all bins per triangle on the screen",
         FREE,
     )
     .because(
-        "a property of the scenes, which are likenesses: the head's 59,592 triangles are tiny, the mig's are not. No parameter \
-         moves it, so there is no interval to judge it by; that the count itself is right is tested against the expected \
-         number of regions that a triangle of given legs touches"
+        "This figure is a property of the scenes, which only resemble the original scenes. The 59,592 triangles of the head are tiny, and \
+         the triangles of the mig are larger. No parameter changes the figure, so the figure has no interval. A test compares the count with \
+         the expected number of regions that a triangle of a given size touches"
     ),
     figure(
         "9",
         ("TR94, I3D95", SLATS),
         "rendering latency, constant",
         (1.0, "fields", None),
-        "full-screen:100 on slats with the COPY optimisation: mean; least and greatest are the same",
+        "full-screen:100 on slats with the COPY optimisation: the result is the mean, which equals the minimum and the maximum",
         FREE,
     ),
     figure(
@@ -182,7 +182,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", SLATS),
         "20 field regions to two frame buffers",
         (11.0, "region times", None),
-        "full-screen:60 on slats without the COPY optimisation: from the first word to the last, in 780 us",
+        "full-screen:60 on slats without the COPY optimisation: the time from the first word to the last word, in units of 780 us",
         Basis::Rule { rule: "a frame-buffer port serves in order of arrival" },
     ),
     figure(
@@ -190,7 +190,7 @@ pub const FIGURES: [Figure; 26] = [
         ("I3D95", SLATS),
         "half of them",
         (3.9, "ms", None),
-        "full-screen:100 on slats with the COPY optimisation: the bottom regions, from the first word to the last",
+        "full-screen:100 on slats with the COPY optimisation: the time from the first word to the last word of the bottom regions",
         Basis::Rule { rule: "odd renderers begin with the right eye" },
     ),
     figure(
@@ -210,9 +210,9 @@ pub const FIGURES: [Figure; 26] = [
         FREE,
     )
     .because(
-        "the copy optimisation makes 4.68 ms free; the published 30 triangles more need 156 us each, here each takes 126 us \
-         (60 us of code for both eyes, and the wait until all renderers have begun with a clump). One channel for each board instead of \
-         two would give 127 with the same code",
+        "The COPY optimisation saves 4.68 ms. The paper prints 30 more triangles, so each of them takes 156 us. In the model, each triangle \
+         takes 126 us. These 126 us are 60 us of code for both eyes and the wait until all renderers have begun with a clump. With one channel \
+         for each board instead of two, the same code would give 127 triangles",
     ),
     figure(
         "14",
@@ -227,7 +227,7 @@ pub const FIGURES: [Figure; 26] = [
         ("I3D95", SLATS),
         "time before the first copy in a field: about",
         (12.8, "ms", None),
-        "the largest scene of figure 13: from the retrace to the first word of the first copy",
+        "the largest scene of figure 13: the time from the retrace to the first word of the first copy",
         FREE,
     ),
     figure(
@@ -235,7 +235,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
         (7_700.0, "triangles", None),
-        "full-screen:N on small-hmd: the last N whose bins fit for one eye, by their size (tests/readings.rs runs it and one more)",
+        "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/readings.rs runs this N and N + 1.",
         Basis::Fitted { parameter: "gp.bin_bytes" },
     ),
     figure(
@@ -251,32 +251,32 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "the same: mean frame time, by which the latency is meant, about 17.5 fields",
         (293.0, "ms", None),
-        "full-screen:7700 on small-hmd: an eye's path from the start of its TRANSFORM to the end of its COPY",
+        "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
         Basis::Rule { rule: "TRANSFORM waits until the bins have room for it" },
     )
     .because(
-        "with bins for both eyes at once TRANSFORM of an eye begins while the other one is rendered, and it would be 454 ms at 2.2 Hz"
+        "With bins for both eyes, TRANSFORM of one eye begins while the other eye is rendered. The result would then be 454 ms at 2.2 Hz"
     ),
     figure(
         "17",
         ("I3D95", RC),
         "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
         (55.5, "ms", Some(1.5)),
-        "full-screen:2 on small-hmd, a frame for each of 24 low points of the bob: mean from SEND, at which the host starts the frame, to \
-         the light under a photodiode in the middle of the screen; in brackets under the first and the last line",
+        "full-screen:2 on small-hmd, one frame for each of 24 low points of the bob. The result is the mean time from the start of SEND to the \
+         light under a photodiode in the middle of the screen. The brackets give the results for a photodiode on the first and the last line.",
         FREE,
     )
     .because(
-        "frames on demand find every stage idle. SEND, EDIT, TRANSFORM and RENDER of two triangles are short, COPY of both eyes takes \
-         31.2 ms, the retrace is waited for half a field, and the beam reaches the photodiode up to a field later. Where on the screen the \
-         photodiode was is not published, nor what else a frame of the pendulum's program did",
+        "A frame on demand finds every stage idle. SEND, EDIT, TRANSFORM and RENDER of two triangles are short. COPY of both eyes takes \
+         31.2 ms, and the wait for the retrace takes half a field on average. The beam reaches the photodiode up to one field later. The \
+         position of the photodiode on the screen is not published. The other work of the pendulum's program is not published either",
     ),
     figure(
         "18",
         ("I3D95", HEAD),
         "errors in pixels of two systems with 90 and 50 ms from head to light: ratio",
         (1.8, "", None),
-        "recorded use as a synthetic motion, four seeds of two minutes: what is drawn for the pose of 90 and of 50 ms before",
+        "The head follows a synthetic motion of recorded use, for four seeds of two minutes. The pictures are drawn for the poses of 90 ms and of 50 ms before.",
         FREE,
     ),
     figure(
@@ -284,8 +284,8 @@ pub const FIGURES: [Figure; 26] = [
         ("I3D95", HEAD),
         "optical tracker and Rendering Control together",
         (90.0, "ms", None),
-        "full-screen:12 on small-hmd, synthetic motion, no prediction: from the pose to the arrival of its report, and from the start of \
-         TRANSFORM to the swap as in figure 4",
+        "full-screen:12 on small-hmd, with a synthetic motion and without prediction. The result is the sum of two times. The first is the time \
+         from the pose to the arrival of its report. The second is the time from the start of TRANSFORM to the swap, like figure 4.",
         FREE,
     ),
     figure(

@@ -14,8 +14,9 @@ use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 pub(super) const TITLE: &str = "Trackers";
 
-pub(super) const ABOUT: &str = "The unpatched kernel looks at the serial line every 30 ms (TR94). Reports wait for the next look, and the host has the pose of \
-the last look until then. The Fastrak's filter is x' = a x + (1 - a) x'; a steady turn comes out dt (1 - a) / a later, with dt of 1/120 s.";
+pub(super) const ABOUT: &str = "The unpatched kernel polls the serial line every 30 ms (TR94). A report waits for the next poll, and until then the host has \
+the pose of the last poll. The filter of the Fastrak is x' = a x + (1 - a) x'. The filter delays a steady turn by dt (1 - a) / a, with \
+dt = 1/120 s.";
 
 pub(super) fn measurements() -> Vec<Measurement> {
     let row = |id, (paper, section), statement, value, experiment, cause, measure| Measurement {
@@ -23,16 +24,17 @@ pub(super) fn measurements() -> Vec<Measurement> {
         measure,
         moved_by: &[],
     };
-    let filter = "a tracker without noise on a head that turns by 2 degrees a second: the angle between the pose of a report and the head's when \
-                  its first character is sent, over the rate";
+    let filter = "A tracker without noise reports a head that turns by 2 degrees a second. The result is an angle divided by the rate of the turn. The \
+                  angle lies between the reported pose and the pose of the head when the first character of the report is sent.";
     vec![
         row(
             "T1",
             ("TR94", "serial line"),
             "polling adds almost two fields (taken as 1.5 to 2)",
             (1.75, "fields", Some(0.25)),
-            "Fastrak, polled and patched, 200 seeds of 2 s: greatest wait of a report for the kernel. The mean in a run: full-screen:12 on \
-             small-hmd, mean time from the pose to the start of TRANSFORM, polled less patched",
+            "A Fastrak runs with the polled and with the patched kernel, for 200 seeds of 2 s. The result is the longest wait of a report for the \
+             kernel. The mean in a run is a difference between both kernels, for full-screen:12 on small-hmd. It compares the mean time from the \
+             pose to the start of TRANSFORM.",
             "",
             polling,
         ),

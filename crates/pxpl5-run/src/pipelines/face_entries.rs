@@ -80,7 +80,7 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 
 /// Descriptions of variants that latch orientations more often than the variant above them.
 const BY_LINE: &str = "the same, with an orientation for each line";
-const BY_PIXEL: &str = "the same, with orientations as often as the host's line carries them, latched by pixel";
+const BY_PIXEL: &str = "the same, with an orientation latched for each pixel, as often as the host's line carries one";
 
 /// Creates an entry from a policy and a latch mode.
 macro_rules! entry {
@@ -93,25 +93,29 @@ macro_rules! entry {
 
 /// Registry entries of the address recalculation pipelines.
 pub(super) const ENTRIES: [PipelineEntry; 15] = [
-    entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
+    entry!(Full, Field, "six faces in one memory, looked up with one orientation for each field (VRAIS 93)"),
     entry!(Full, Line, BY_LINE),
     entry!(Full, Pixel, BY_PIXEL),
-    entry!(Objects, Field, "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)"),
+    entry!(
+        Objects,
+        Field,
+        "six faces in several memories, with each object in the slowest memory that keeps its image valid (SIGGRAPH 94)"
+    ),
     entry!(Objects, Line, BY_LINE),
     entry!(Objects, Pixel, BY_PIXEL),
     entry!(
         Cells,
         Field,
-        "objects cut at the borders of square cells, near cells drawn often, far ones seldom (ACSC 2005)"
+        "objects cut at the borders of square cells, with near cells drawn more often than far cells (ACSC 2005)"
     ),
     entry!(Cells, Line, BY_LINE),
     entry!(Cells, Pixel, BY_PIXEL),
-    entry!(CellsWarped, Field, "cells whose vertices are moved so that memories meet at their borders (ACSC 2005)"),
+    entry!(CellsWarped, Field, "cells with vertices that are moved so that memories meet at their borders (ACSC 2005)"),
     entry!(CellsWarped, Line, BY_LINE),
     entry!(CellsWarped, Pixel, BY_PIXEL),
     ideal(
         Latch::Field,
-        "faces of an ideal renderer, in no time: what a faster machine could gain at most",
+        "faces of an ideal renderer that takes no time: the limit of what a faster machine could gain",
         |settings| build_ideal(Latch::Field, settings),
     ),
     ideal(Latch::Line, BY_LINE, |settings| build_ideal(Latch::Line, settings)),

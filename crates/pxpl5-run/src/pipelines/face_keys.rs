@@ -16,7 +16,7 @@ pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-i
 
 pub(super) const LENS: Key = Key {
     name: "lens",
-    about: "what lies before the eye: flat, equidistant, radial:K1 or radial:K1:K2; errors in pixels are those of a flat picture",
+    about: "lens before the eye: flat, equidistant, radial:K1 or radial:K1:K2; errors in pixels are those of a flat picture",
     values: KeyValues::Lens,
     sets: &[],
 };
@@ -26,7 +26,7 @@ pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"
 
 pub(super) const POLICY: Key = Key {
     name: "policy",
-    about: "what is drawn when: full, objects, cells or cells-warp (segment and warp mean nothing without cells)",
+    about: "policy that selects what is drawn when: full, objects, cells or cells-warp (segment and warp need cells)",
     values: KeyValues::Names(&POLICIES),
     sets: &[],
 };
@@ -36,14 +36,14 @@ const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[
 
 pub(super) const SEGMENT: Key = Key {
     name: "segment",
-    about: "cut structures at the borders of cells (without, all of one is drawn as often as its nearest part): true or false",
+    about: "cut structures at the borders of cells: true or false (an uncut structure is drawn as often as its nearest part)",
     values: KeyValues::Flag,
     sets: &[],
 };
 
 pub(super) const WARP: Key = Key {
     name: "warp",
-    about: "how the displacement of vertices falls off from a border to a slower memory: linear, smoothstep or step",
+    about: "decrease of the displacement of vertices from a border to a slower memory: linear, smoothstep or step",
     values: KeyValues::Names(&FALLOFFS),
     sets: &[],
 };

@@ -225,7 +225,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
         },
         Key {
             name: "batch",
-            about: "blocks drawn with one view; 0 for as many as keep ring and processors equally busy",
+            about: "number of blocks drawn with one view; 0 keeps ring and processors equally busy",
             values: KeyValues::Whole(0, 65_535),
             sets: &[],
         },

@@ -309,16 +309,20 @@ const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
 
 /// Registry entries of just-in-time pixels.
 pub(super) const ENTRIES: [PipelineEntry; 8] = [
-    entry("jitp-field", "a field drawn for its middle, a field ahead of the beam (JITP)", |settings| {
-        build(Viewpoint::Field, false, settings)
-    }),
-    entry("jitp-field-racing", "a field drawn for its middle, just before the beam (JITP)", |settings| {
-        build(Viewpoint::Field, true, settings)
-    }),
-    entry("jitp-scanline", "every line drawn for its own moment, a field ahead of the beam (JITP)", |settings| {
+    entry(
+        "jitp-field",
+        "a field drawn for the instant of its middle, one field ahead of the beam (JITP)",
+        |settings| build(Viewpoint::Field, false, settings),
+    ),
+    entry(
+        "jitp-field-racing",
+        "a field drawn for the instant of its middle, just before the beam (JITP)",
+        |settings| build(Viewpoint::Field, true, settings),
+    ),
+    entry("jitp-scanline", "every line drawn for its own instant, one field ahead of the beam (JITP)", |settings| {
         build(Viewpoint::Strip, false, settings)
     }),
-    entry("jitp-scanline-racing", "every line drawn for its own moment, just before the beam (JITP)", |settings| {
+    entry("jitp-scanline-racing", "every line drawn for its own instant, just before the beam (JITP)", |settings| {
         build(Viewpoint::Strip, true, settings)
     }),
     entry("jitp-dual-screen", "lines between two views of a field, interpolated on the screen (JITP)", |settings| {

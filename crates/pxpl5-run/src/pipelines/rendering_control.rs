@@ -231,7 +231,7 @@ fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "rendering-control",
     family: "rendering-control",
-    about: "frames drawn region by region, three stages overlapping, under PPHIGS (TR94)",
+    about: "frames drawn region by region in three overlapping stages under PPHIGS (TR94)",
     preset: "small-hmd",
     keys: &[
         Key {
@@ -243,7 +243,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
         SHADING,
         Key {
             name: "finished",
-            about: "what becomes of a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer goes on with the next)",
+            about: "rule for a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer continues with the next)",
             values: KeyValues::Names(&[FinishedRegions::Wait.name(), FinishedRegions::Store.name()]),
             sets: &[],
         },

@@ -354,7 +354,7 @@ fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "slats",
     family: "slats",
-    about: "a new picture every field, all of it between two retraces (TR94, I3D95)",
+    about: "a new picture in every field, drawn completely between two retraces (TR94, I3D95)",
     preset: "slats",
     keys: &[
         Key {
@@ -366,19 +366,19 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
         },
         Key {
             name: "binning",
-            about: "who gets a clump: all regions, or those touched",
+            about: "receivers of a clump: all regions, or the touched regions",
             values: KeyValues::Names(&[BINNINGS[0].0, BINNINGS[1].0]),
             sets: &[],
         },
         Key {
             name: "lighting",
-            about: "where vertex colours come from: precomputed (no light on the GP), or gp (lit there for each eye)",
+            about: "source of vertex colours: precomputed (no light on the GP), or gp (computed on the GP for each eye)",
             values: KeyValues::Names(&[LIGHTINGS[0].0, LIGHTINGS[1].0]),
             sets: &[],
         },
         Key {
             name: "code",
-            about: "code of 1994, 1995 or optimised: times per primitive, where not those of the machine",
+            about: "times per primitive of the code of 1994, 1995 or optimised, instead of the times of the machine",
             values: KeyValues::Names(&[CODES[0].0, CODES[1].0, CODES[2].0]),
             sets: &["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"],
         },

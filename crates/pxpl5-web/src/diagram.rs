@@ -1,0 +1,182 @@
+//! Facts for the block diagram and the stories of the page: stages, messages, regions on their way, and the age of the
+//! shown picture.
+
+use pxpl5_gp::{Stage, StageEdge};
+use pxpl5_machine::Board;
+use pxpl5_run::{PictureTimes, Stepper};
+use pxpl5_sim::Time;
+use pxpl5_wire::{FieldParity, Lines};
+use serde_json::{Value, json};
+
+/// Returns the name of the stage in which a processor is, or `None` between two stages. The name is that of the papers,
+/// in lower case.
+pub(crate) fn stage(stepper: &Stepper, board: Board) -> Option<&'static str> {
+    let ports = stepper.record().ports();
+    let marks = &stepper.record().observation().marks;
+    let last = marks.iter().rev().find(|mark| mark.time <= stepper.now() && ports.board(mark.node) == board)?;
+    (last.edge == StageEdge::Begin).then(|| name(last.stage))
+}
+
+const fn name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Sample => "sample",
+        Stage::Send => "send",
+        Stage::Edit => "edit",
+        Stage::Transform => "transform",
+        Stage::Render => "render",
+        Stage::Copy => "copy",
+        Stage::Swap => "swap",
+    }
+}
+
+/// Returns messages that began after an instant, at most `most` of them. If there are more, every n-th is returned.
+/// Messages that are still on a channel are included.
+pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
+    let record = stepper.record();
+    let name = |node| record.ports().board(node).to_string();
+    // A channel is granted before its first word arrives. The begin identifies a message only within one list.
+    let done = record.observation().traffic.as_deref().into_iter().flat_map(|traffic| &traffic.transfers);
+    let mut all: Vec<(Time, String, String, u32)> = done
+        .filter(|transfer| transfer.begin > after && transfer.begin <= stepper.now())
+        .map(|transfer| (transfer.begin, name(transfer.source), name(transfer.destination), transfer.words))
+        .collect();
+    all.sort();
+    let stride = all.len().div_ceil(most.max(1)).max(1);
+    let some = all.iter().step_by(stride);
+    some.map(|(begin, from, to, words)| json!({"begin_ps": begin.0, "from": from, "to": to, "words": words})).collect()
+}
+
+/// Returns the regions that renderers are sending to displays: the renderer, the display, and the rectangle in pixels.
+/// `lines` is `[0, 1]` for all lines of the frame, otherwise the first line and the step of a field's lines.
+pub(crate) fn regions(stepper: &Stepper) -> Value {
+    let record = stepper.record();
+    let copying = (0..record.renderers().len()).filter_map(|number| {
+        let target = stepper.renderer(number)?.copying?.target;
+        let [left, top, width, height] = target.grid.rectangle(target.region);
+        let lines = match target.lines {
+            Lines::Frame => [0, 1],
+            Lines::Field(FieldParity::Even) => [0, 2],
+            Lines::Field(FieldParity::Odd) => [1, 2],
+        };
+        let to = record.ports().board(target.frame_buffer).to_string();
+        // The surfaces of a display are its frame buffers, in the order of their ports.
+        let surface = record.displays().iter().find_map(|display| {
+            display
+                .nodes()
+                .iter()
+                .position(|node| *node == target.frame_buffer)
+                .map(|port| port % display.surfaces().len())
+        });
+        Some(json!({
+            "renderer": number, "to": to, "surface": surface, "picture": target.picture.0,
+            "rectangle": [left, top, width, height], "lines": lines,
+        }))
+    });
+    copying.collect()
+}
+
+/// Returns the age of the shown picture in milliseconds: the time since its pose was sampled. `null` before the first
+/// picture, and for a pipeline whose picture has no single sample.
+///
+/// A picture in the field that the beam draws now is not evaluated yet. It counts as shown if it is complete, or if the
+/// picture before it was shown and its last regions may still arrive ahead of the beam.
+pub(crate) fn age(stepper: &Stepper) -> Value {
+    let (now, record) = (stepper.now(), stepper.record());
+    let field = stepper.period();
+    // Evaluate the present field as if it were over.
+    let mut pictures = stepper.experiment().pipeline().pictures(record, record.tick(field.next()));
+    pictures.retain(|times| times.shown_at <= now);
+    let in_progress = |times: &PictureTimes| times.copied_at.is_none() && times.shown_at >= record.tick(field);
+    let shown = match pictures.as_slice() {
+        [.., before, last] if in_progress(last) && before.is_shown() => Some(last),
+        all => all.iter().rev().find(|times| times.is_shown()),
+    };
+    let Some(times) = shown else { return Value::Null };
+    let Some(sampled) = times.sampled_at.filter(|at| *at <= now) else { return Value::Null };
+    json!({"picture": times.picture.0, "age_ms": now.since(sampled).as_ms(), "shown_ms": times.shown_at.since(sampled).as_ms()})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Files;
+    use crate::session::Session;
+
+    fn session(pipeline: &str) -> Session {
+        let settings = format!("pipeline={pipeline}\nscene=aircraft\nfields=60\n");
+        Session::new(&settings, &Files::default()).expect("known settings")
+    }
+
+    /// TR94: the GPs TRANSFORM, then the renderers get commands, then they send regions to the frame buffers.
+    #[test]
+    fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
+        let mut session = session("rendering-control");
+        let mut first = [None; 3];
+        for step in 1..20_000_u64 {
+            session.run_to(step * 20_000_000);
+            let stepper = session.stepper();
+            let seen = [
+                stage(stepper, Board::Gp(1)) == Some("transform"),
+                stepper
+                    .channels()
+                    .iter()
+                    .any(|on| matches!(stepper.record().ports().board(on.destination), Board::Renderer(_))),
+                regions(stepper).as_array().is_some_and(|all| !all.is_empty()),
+            ];
+            first.iter_mut().zip(seen).filter(|(at, seen)| at.is_none() && *seen).for_each(|(at, _)| *at = Some(step));
+            if first.iter().all(Option::is_some) {
+                break;
+            }
+        }
+        let [transform, commands, regions] = first.map(|at| at.expect("it happens"));
+        assert!(transform < commands && commands < regions, "{first:?}");
+    }
+
+    #[test]
+    fn messages_are_those_after_an_instant_and_never_more_than_asked_for() {
+        let mut session = session("slats");
+        session.run_to(100_000_000_000);
+        let after = Time(90_000_000_000);
+        let all = messages(session.stepper(), after, usize::MAX);
+        let all = all.as_array().expect("a list");
+        assert!(all.len() > 20);
+        assert!(all.iter().all(|message| message["begin_ps"].as_u64().is_some_and(|begin| begin > after.0)));
+        let few = messages(session.stepper(), after, 5);
+        assert!((3..=5).contains(&few.as_array().expect("a list").len()));
+    }
+
+    #[test]
+    fn a_region_lies_within_the_picture_of_its_eye() {
+        let mut session = session("slats");
+        let mut seen = 0;
+        for step in 1..400_u64 {
+            session.run_to(50_000_000_000 + step * 200_000_000);
+            for region in regions(session.stepper()).as_array().expect("a list") {
+                let [left, top, width, height] =
+                    [0, 1, 2, 3].map(|n| region["rectangle"][n].as_u64().expect("a number"));
+                let lines = region["lines"][1].as_u64().expect("a number");
+                assert!(left + width <= 640 && (top + height) * lines <= 480, "{region}");
+                assert!(region["surface"].as_u64().is_some_and(|surface| surface < 2), "{region}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 100, "{seen}");
+    }
+
+    /// TR94: Slats shows the pose of one field ago. So its picture is one field old at the retrace, and then grows older
+    /// until the next one.
+    #[test]
+    fn under_slats_a_picture_is_one_field_old_when_it_is_shown() {
+        let mut session = session("slats");
+        assert_eq!(age(session.stepper()), Value::Null);
+        // A field of NTSC takes 1001/60000 s.
+        let field_ms = 1001.0 / 60.0;
+        for step in 0..40 {
+            let at_ms = 12.0 * field_ms + 1.0 + f64::from(step);
+            session.run_to((at_ms * 1e9) as u64);
+            let since_retrace = at_ms % field_ms;
+            let found = age(session.stepper())["age_ms"].as_f64().expect("a picture is shown");
+            assert!((found - field_ms - since_retrace).abs() < 1e-3, "{found} ms at {since_retrace} ms of a field");
+        }
+    }
+}
