@@ -2,8 +2,9 @@
 
 use crate::config::FIT_DISTANCE_RADII;
 use crate::error::SceneError;
-use crate::motion::{HeadMotion, HeadPath, Sway};
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Vertex};
+use crate::sway::Sway;
 use glam::Vec3;
 
 /// Colour of a mesh without colours: light grey.
