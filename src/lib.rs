@@ -122,6 +122,19 @@ pub mod firmware {
     };
 }
 
+/// Names that most programs with this crate need: `use pxpl5::prelude::*`.
+pub mod prelude {
+    pub use crate::scene::{self, Scene};
+    pub use crate::tracking::Pose;
+    pub use crate::tracking::motion::{Motion, Recording, from_fn};
+    pub use crate::tracking::predict::PredictorKind;
+    pub use crate::tracking::tracker::TrackerConfig;
+    pub use crate::{
+        Experiment, ExperimentError, ExperimentFile, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
+        Outcome, Pipeline, Pixels, RenderingControl, Report, Results, Slats, SurfaceId, WhatIf, registry, what_if,
+    };
+}
+
 /// Compiles and runs the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

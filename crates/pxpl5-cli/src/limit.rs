@@ -48,7 +48,7 @@ pub(crate) struct LimitArgs {
     /// typical otherwise.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
-    /// What grows: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
+    /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
     /// Least value of --over that is tried; default: 1 for boards, else the least that the sources allow.

@@ -93,7 +93,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// What 10 % more of each resource would bring.
+/// Returns the effect of 10 % more of each resource.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
     what_if(&plan.registry, &experiment).map_err(CliError::from)

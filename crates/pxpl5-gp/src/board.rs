@@ -55,7 +55,7 @@ pub enum GpOutput {
 pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
-/// What the time of a board's CPU went to.
+/// The time of a board's CPU by kind of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpUse {
     /// All time that was spent.

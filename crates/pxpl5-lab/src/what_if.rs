@@ -1,11 +1,11 @@
-//! What 10 % more of each resource of a machine would bring.
+//! Effect of 10 % more of each resource of a machine.
 
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Keep, Level, Pixels, Registry, Summary};
 use serde::Serialize;
 
-/// What a change of the machine brings.
+/// Effect of a change of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WhatIf {
     /// The resource of which there is more.
@@ -28,7 +28,7 @@ pub struct WhatIf {
 struct Knob {
     resource: &'static str,
     key: &'static str,
-    /// Whether a smaller value is more of it: a time.
+    /// True for a time, of which a smaller value is more.
     is_time: bool,
 }
 

@@ -360,7 +360,43 @@ impl MachineConfig {
         if self.displays.is_empty() {
             return Err(no_display());
         }
+        self.check_channels()?;
         self.displays.iter().try_for_each(|display| Ok(display.check()?))
+    }
+}
+
+impl MachineConfig {
+    /// Returns the machine with another number of graphics processors, the master included.
+    #[must_use]
+    pub fn with_gps(self, n_gps: usize) -> Self {
+        Self { n_gps, ..self }
+    }
+
+    /// Returns the machine with another number of renderers.
+    #[must_use]
+    pub fn with_renderers(self, n_renderers: usize) -> Self {
+        Self { n_renderers, ..self }
+    }
+
+    /// Refuses a ring on which commands for full FIFOs can hold all channels: the pixels of the renderers, which would empty the FIFOs, would
+    /// wait for ever. Each renderer receives one message at a time,
+    /// and each graphics processor sends on `source_channels` at most.
+    fn check_channels(&self) -> Result<(), ConfigError> {
+        let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
+        let sent = source_channels.saturating_mul(self.n_gps as u64);
+        let held = fifo_channels.min(self.n_renderers as u64).min(sent);
+        if held < channels {
+            return Ok(());
+        }
+        let possible = match channels {
+            0 | 1 => format!("ring.channels {}", held + 1),
+            _ => format!("ring.fifo_channels {} or ring.channels {}", channels - 1, held + 1),
+        };
+        Err(ConfigError::Board(format!(
+            "ring.channels {channels} with ring.fifo_channels {fifo_channels} and {} renderers: commands for full FIFOs could hold all channels, and \
+             no pixels would leave the renderers; nearest possible: {possible}",
+            self.n_renderers
+        )))
     }
 }
 
@@ -387,6 +423,24 @@ fn check(what: &str, found: u64, low: u64, high: u64) -> Result<(), ConfigError>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_ring_whose_channels_full_fifos_can_hold_is_refused_with_the_nearest_possible_value() {
+        let machine = |channels: u64, fifo_channels: u64, renderers: u64| {
+            let mut machine = MachineConfig::small_hmd();
+            machine.set("ring.channels", channels).expect("in range");
+            machine.set("ring.fifo_channels", fifo_channels).expect("in range");
+            machine.set("n_renderers", renderers).expect("in range");
+            machine.check()
+        };
+        let error = machine(2, 6, 5).expect_err("five renderers").to_string();
+        assert!(error.ends_with("nearest possible: ring.fifo_channels 1 or ring.channels 6"), "{error}");
+        let error = machine(1, 1, 5).expect_err("one channel").to_string();
+        assert!(error.ends_with("nearest possible: ring.channels 2"), "{error}");
+        for (channels, fifo_channels, renderers) in [(2, 1, 5), (6, 6, 5), (2, 6, 1), (8, 6, 20)] {
+            assert_eq!(machine(channels, fifo_channels, renderers), Ok(()), "{channels} {fifo_channels} {renderers}");
+        }
+    }
 
     #[test]
     fn every_preset_is_a_valid_machine() {

@@ -1,4 +1,4 @@
-//! What a latency waits for: the chain of waits that ends with a picture on the screen.
+//! The chain of waits that ends with a picture on the screen.
 //!
 //! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. It goes from each piece of work to the
 //! piece whose end let it begin. Each instant of the latency belongs to one resource, so the shares add up to 1.

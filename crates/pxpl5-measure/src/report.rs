@@ -105,7 +105,7 @@ pub struct Report {
     pub hmd: HmdConfig,
     /// How busy each kind of board was; nothing of a machine that has not run.
     pub utilisation: Option<Utilisation>,
-    /// What the latency of the last complete pictures waited for; nothing where no picture was complete.
+    /// Waits that make up the latency of the last complete pictures. `None` if no picture was complete.
     pub critical_path: Option<CriticalPath>,
     /// Hash of all events of the run and of the statistics of this report up to `arp`.
     pub trace_hash: String,

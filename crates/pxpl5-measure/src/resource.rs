@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a piece of a latency waits for.
+/// A resource that a piece of a latency waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resource {

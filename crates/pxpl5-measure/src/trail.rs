@@ -65,7 +65,7 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Where the way back stands.
+/// Position of the way back.
 #[derive(Clone, Copy, Debug)]
 enum At {
     /// At the begin of a region's way into a display.
@@ -106,7 +106,7 @@ impl Way {
 }
 
 impl<'a> Trail<'a> {
-    /// Of the records from an instant on, and a little before.
+    /// Collects the records from an instant on.
     pub(crate) fn of(record: &'a Record, earliest: Time) -> Self {
         let observation = record.observation();
         let mut arrivals: Vec<&Arrival> = observation.arrivals.iter().filter(|a| a.last_part_at >= earliest).collect();

@@ -50,7 +50,7 @@ impl Shares {
 /// A board that is busy for a smaller share of the time is idle.
 const IDLE: f64 = 0.01;
 
-/// What the CPUs of the graphics processors did.
+/// Shares of the CPUs of the graphics processors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GpUtilisation {
     /// All that their CPUs did.
@@ -63,7 +63,7 @@ pub struct GpUtilisation {
     pub tokens: f64,
 }
 
-/// What the controllers of the renderers did.
+/// Shares of the renderers' controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RendererUtilisation {
     /// Execution of commands.
@@ -74,7 +74,7 @@ pub struct RendererUtilisation {
     pub waiting: f64,
 }
 
-/// What the channels of the ring carried.
+/// Shares and words of the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RingUtilisation {
     /// Occupied channels, overhead and stalls included.
@@ -97,7 +97,7 @@ pub struct PortUtilisation {
 /// The share of one port.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortShare {
-    /// What is behind the port: the surface's title, or the display's name with the port's number.
+    /// Title of the surface behind the port, or the display's name with the port's number.
     pub port: String,
     /// Share of the time in which messages came in.
     pub busy: f64,

@@ -97,7 +97,7 @@ pub struct Renderer {
 /// A region that a renderer has drawn: when its commands were executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Where the region goes.
+    /// Display, buffer and place that the region is for.
     pub target: CopyTarget,
     /// Words of its pixels that are sent.
     pub words: u32,

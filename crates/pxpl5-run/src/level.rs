@@ -21,6 +21,8 @@
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
 
 /// Level of modelling, from closed forms to single instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -46,6 +48,29 @@ impl Level {
             Self::Transaction => "transaction",
             Self::Cycle => "cycle",
         }
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A name that no level of modelling has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected analytic, transaction or cycle, found `{found}`")]
+pub struct UnknownLevel {
+    /// The name given.
+    pub found: String,
+}
+
+impl FromStr for Level {
+    type Err = UnknownLevel;
+
+    fn from_str(text: &str) -> Result<Self, UnknownLevel> {
+        let found = Self::ALL.into_iter().find(|level| level.name() == text);
+        found.ok_or_else(|| UnknownLevel { found: text.to_owned() })
     }
 }
 

@@ -81,7 +81,7 @@ pub use keep::Keep;
 pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
 pub use latched_head::{OrientationTiming, RotationLatency};
 pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
-pub use level::Level;
+pub use level::{Level, UnknownLevel};
 pub use outcome::Outcome;
 pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};

@@ -243,6 +243,12 @@ impl Outcome {
         self.closed.tally.latency_ms.statistics()
     }
 
+    /// Returns the statistics of the latencies in milliseconds; `None` of a run that showed no complete picture in its window.
+    #[must_use]
+    pub fn latency(&self) -> Option<Statistics> {
+        Some(self.latency_ms()).filter(|statistics| statistics.n > 0)
+    }
+
     /// Returns the statistics of the latencies in periods of the first display. For NTSC, a period is a field of
     /// 1001/60000 s.
     #[must_use]

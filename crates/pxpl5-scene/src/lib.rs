@@ -64,6 +64,7 @@ pub mod config;
 mod decimate;
 mod edit;
 mod error;
+mod from_triangles;
 mod import;
 mod motion;
 mod scene;

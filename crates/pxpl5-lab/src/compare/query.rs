@@ -279,8 +279,10 @@ fn definition(plan: &Plan) -> String {
 }
 
 impl Comparison {
-    /// Returns the row with the least mean error. A row with pictures that were due and not shown never is the best, nor is the reference,
-    /// nor a row that was not evaluated over the same periods as the others.
+    /// Returns the row with the least mean error.
+    ///
+    /// A row with pictures that were due and not shown is never the best. Neither is the reference, nor a row that was evaluated over other
+    /// periods.
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let judged =

@@ -53,8 +53,9 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first period in which the rows of a comparison are evaluated: after a quarter of the run, so that all rows are evaluated over
-/// the same periods although some start up later than others.
+/// Returns the first period in which the rows of a comparison are evaluated: after a quarter of the run.
+///
+/// So all rows are evaluated over the same periods, although some start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }

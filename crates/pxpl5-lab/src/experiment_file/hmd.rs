@@ -41,8 +41,8 @@ pub(super) const NUMBERS: [Number; 4] = [
 ///
 /// # Errors
 ///
-/// Fails for a number out of its range, and for a pipeline that draws faces around the head: the field of view of its display belongs to
-/// the parameters of that display.
+/// Fails for a number out of its range. Fails for a pipeline that draws faces around the head, because the optics of its display belong to
+/// that display's parameters.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd, FileError> {
     let mut config = HmdConfig::unc();
     for (key, _, set, _) in NUMBERS {

@@ -34,6 +34,7 @@ mod read;
 mod scene;
 mod text;
 mod tracking_numbers;
+mod units;
 
 pub use error::FileError;
 pub use head::HeadChoice;
@@ -238,7 +239,15 @@ impl ExperimentFile {
     /// Stores a setting under its full path.
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
         let canonical = self.canonical_key(path, &place)?;
-        self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
+        let setting = Setting { value, place, folder: folder.to_owned() };
+        // A number with a unit is kept as a number in the key's own unit.
+        let converted = match setting.value.as_str().map(|text| units::converted(&self.registry, &canonical, text)) {
+            Some(Err(expected)) => return Err(read::wrong(&canonical, &setting, &expected)),
+            Some(Ok(converted)) => converted,
+            None => None,
+        };
+        let value = converted.unwrap_or_else(|| setting.value.clone());
+        self.settings.insert(canonical, Setting { value, ..setting });
         Ok(())
     }
 

@@ -71,7 +71,7 @@ pub struct OverQuery {
     pub key: String,
     /// The values that are tried.
     pub values: Values,
-    /// What must hold.
+    /// Goal that a value must reach.
     pub goal: Goal,
 }
 
@@ -82,17 +82,17 @@ pub struct OverLimit {
     pub least: Option<f64>,
     /// The greatest value that reaches the goal, if a greater one was tried and misses it.
     pub most: Option<f64>,
-    /// Whether any value that was tried reaches it.
+    /// True if any value that was tried reaches the goal.
     pub reached: bool,
     /// Values that were tried, in order, each with whether it reaches the goal.
     pub tried: Vec<(f64, bool)>,
     /// The value next to the limit that misses the goal, or the best one where all miss.
     pub missed_at: Option<f64>,
-    /// What limits the experiment at that value, in words.
+    /// Limit of the experiment at that value, in words.
     pub because: Option<String>,
 }
 
-/// What came of one value.
+/// Result of one value.
 struct Trial {
     reached: bool,
     /// How near the goal is; more is better.
@@ -101,7 +101,7 @@ struct Trial {
 }
 
 impl OverQuery {
-    /// Returns the values that are tried where nobody says which.
+    /// Returns the values that are tried by default.
     ///
     /// The numbers of boards go up to those of the largest preset. Other parameters go through the range that the sources allow.
     ///
@@ -287,7 +287,7 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
 /// A board that is busier than this limits the machine by itself.
 const FULL: f64 = 0.95;
 
-/// What limits a run: the board that is always busy, or else what the latency waits for.
+/// Returns the limit of a run: the board that is always busy, or else the resource that the latency waits for.
 fn because(outcome: &Outcome) -> Option<String> {
     let utilisation = Utilisation::of(outcome.record())?;
     let kinds = [

@@ -4,7 +4,7 @@ use super::values::{cell, decimal, heading, known, list, number, number_cell, pa
 use crate::markup::Element;
 use serde_json::Value;
 
-/// Of a report; nothing of one that an older version wrote.
+/// Returns the elements for a report, or none for a report of an older version.
 pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     let mut all = boards(&report["utilisation"]);
     all.extend(path(&report["critical_path"]));

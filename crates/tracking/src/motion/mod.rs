@@ -1,5 +1,6 @@
 //! The pose of the head at any instant: closed forms, a random generator with a seed, and replay of recorded traces.
 
+mod from_fn;
 mod growing;
 mod pan;
 mod pendulum;
@@ -12,6 +13,7 @@ mod still;
 mod synthetic;
 mod walk;
 
+pub use from_fn::{FnMotion, from_fn};
 pub use growing::{GrowingRecording, GrowthError};
 pub use pan::Pan;
 pub use pendulum::Pendulum;

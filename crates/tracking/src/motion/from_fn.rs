@@ -1,0 +1,39 @@
+//! A motion that a function computes.
+
+use super::Motion;
+use crate::pose::Pose;
+use crate::time::PS_PER_S;
+use std::fmt;
+
+/// A motion whose pose a function of the time in seconds returns: see [`from_fn`].
+#[derive(Clone)]
+pub struct FnMotion<F>(F);
+
+/// Returns a motion from a function of the simulated time in seconds.
+///
+/// The function must return the same pose for the same time. Two functions whose poses agree at every eighth of a second of the first 64
+/// seconds count as the same motion ([`Motion::identify`]).
+///
+/// ```
+/// use glam::{DQuat, DVec3};
+/// use tracking::Pose;
+/// use tracking::motion::{Motion, from_fn};
+///
+/// let walk = from_fn(|seconds| Pose { position: DVec3::new(0.5 * seconds, 1.7, 0.0), orientation: DQuat::IDENTITY });
+/// assert_eq!(walk.pose(2_000_000_000_000).position.x, 1.0);
+/// ```
+pub const fn from_fn<F: Fn(f64) -> Pose>(pose: F) -> FnMotion<F> {
+    FnMotion(pose)
+}
+
+impl<F> fmt::Debug for FnMotion<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("FnMotion")
+    }
+}
+
+impl<F: Fn(f64) -> Pose> Motion for FnMotion<F> {
+    fn pose(&self, t_ps: u64) -> Pose {
+        (self.0)(t_ps as f64 / PS_PER_S as f64)
+    }
+}

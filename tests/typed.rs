@@ -1,0 +1,70 @@
+//! Short programs with the prelude alone: what a researcher writes first.
+
+use glam::{DQuat, DVec3, Vec3};
+use pxpl5::prelude::*;
+use std::sync::Arc;
+
+/// A cube of 12 triangles on a machine of one's own, before a head of one's own motion.
+#[test]
+fn a_cube_with_its_latency_by_stage_error_and_picture_takes_forty_lines() {
+    let corners: Vec<Vec3> = (0..8).map(|n| Vec3::new((n & 1) as f32, (n >> 1 & 1) as f32, (n >> 2) as f32)).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    let cube = Scene::from_triangles(&corners, &triangles).expect("a cube");
+    let machine = MachineConfig::small_hmd().with_gps(20).with_renderers(8);
+    let turn = from_fn(|seconds| Pose { position: DVec3::ZERO, orientation: DQuat::from_rotation_y(0.5 * seconds) });
+    let head = Head::new(Arc::new(turn), TrackerConfig::fastrak(), PredictorKind::None, 1).expect("a head");
+    let experiment = Experiment::new(machine, RenderingControl::stereo(), cube).fields(60).head(head);
+    let outcome = experiment.run().expect("it fits");
+    let report = outcome.report();
+    for part in &report.latency_parts_ms {
+        assert!(part.statistics.statistics.mean >= 0.0, "{}", part.name);
+    }
+    // A turn of 0.5 rad/s in the latency to light moves the middle by f tan(0.5 t), and f is 320 px / tan 30.
+    let to_light_s = report.head.as_ref().expect("a head").end_to_end.total_ms / 1e3;
+    let expected = 320.0 / 30f64.to_radians().tan() * (0.5 * to_light_s).tan();
+    let fields = &report.head.as_ref().expect("a head").error.by_field;
+    let centre = fields.iter().map(|field| field.centre_px).filter(|px| px.is_finite());
+    let (sum, n) = centre.fold((0.0, 0.0), |(sum, n), px| (sum + px, n + 1.0));
+    assert!((sum / n / expected - 1.0).abs() < 0.2, "{} px, expected about {expected}", sum / n);
+    assert!(outcome.picture(SurfaceId(0)).is_some());
+}
+
+/// The ring's channels by the number of renderers, as a table.
+#[test]
+fn a_table_over_renderers_takes_fifteen_lines() {
+    let rows = [5, 10, 20].map(|renderers| {
+        let machine = MachineConfig::small_hmd().with_renderers(renderers);
+        let scene = scene::builtin("full-screen:12").expect("built in");
+        let experiment = Experiment::new(machine, RenderingControl::stereo(), scene).fields(60).pixels(Pixels::Off);
+        let outcome = experiment.run().expect("it fits");
+        let channels = outcome.report().utilisation.expect("it ran").ring.channels;
+        (renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
+    });
+    // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of 8 channels each
+    // are 11.7 %, and commands and tokens come to that.
+    assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
+}
+
+#[test]
+fn names_are_read_as_they_are_written() {
+    for level in Level::ALL {
+        assert_eq!(level.to_string().parse(), Ok(level));
+    }
+    let error = "cycles".parse::<Level>().expect_err("no level").to_string();
+    assert_eq!(error, "expected analytic, transaction or cycle, found `cycles`");
+}
+
+/// Nothing is shown of a scene that is far too heavy, so there is no latency, and no number stands for it.
+#[test]
+fn a_run_that_shows_nothing_has_no_latency() {
+    let scene = scene::builtin("mig").expect("built in");
+    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(30).pixels(Pixels::Off);
+    let outcome = match experiment.run() {
+        Ok(outcome) => outcome,
+        Err(ExperimentError::TooShort { partial, .. } | ExperimentError::Run { partial, .. }) => *partial,
+        Err(error) => panic!("{error}"),
+    };
+    assert_eq!(outcome.latency().map(|statistics| statistics.n), None);
+    assert!(outcome.report().critical_path.is_none());
+}
