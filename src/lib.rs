@@ -65,9 +65,10 @@ pub use tracking;
 
 pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
 pub use pphigs::RegionBinning;
-pub use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay};
+pub use pxpl5_framebuffer::{
+    FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, OledConfig, Panel, PanelConfig, PanelNumbers,
+};
 pub use pxpl5_gp::CodeVersion;
-pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
     SnapshotError, Suitability, WhatIf, Workstation, compare, figures, growth, intervals, levels, limit,
@@ -78,18 +79,19 @@ pub use pxpl5_machine::{
     PRESETS, Parameter, Ports, Preset, Record, RunError, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, CriticalPath, ErrorCauses, ErrorPart, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS,
+    Budget, CriticalPath, ErrorCauses, ErrorPart, EyeReport, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS,
     LatencyCurve, LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, PathPart, Percentiles,
-    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Resource, Results, Showing,
-    SurfaceStatistics, TooHeavy, Utilisation, picture, side_by_side,
+    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, ReprojectionReport, Resource, Results,
+    Showing, SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
 };
 pub use pxpl5_run::{
-    Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
-    FIELDS_RANGE, FinalResults, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host,
-    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, ObserverFactory, Outcome, Pause,
-    PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl,
-    ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting, Source, Statistics, Stepper, StreamingObserver,
-    Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
+    Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Every, Experiment,
+    ExperimentError, FIELDS_RANGE, FinalResults, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError,
+    HeadViews, Host, Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, ObserverFactory,
+    Outcome, Pause, PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
+    RenderingControl, Reprojection, ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting, Source,
+    Statistics, Stepper, StreamingObserver, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES,
+    WINDOW_DEFINITION, Warp, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmSurfaces, results, timeline, trace_export};

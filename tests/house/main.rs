@@ -17,7 +17,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
     (
         "boards",
-        &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires", "address-recalculation"],
+        &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "address-recalculation"],
         &["ground"],
     ),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),

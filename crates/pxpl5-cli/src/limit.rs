@@ -40,7 +40,7 @@ pub(crate) struct LimitArgs {
     /// Preset of the machine; default: the machine on which the papers measured the pipeline.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
-    /// Display of the pipeline's pictures: ntsc or hires.
+    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel.
     #[arg(long)]
     display: Option<String>,
     /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model

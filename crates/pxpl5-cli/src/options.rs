@@ -35,10 +35,12 @@ impl clap::Args for PipelineOptions {
         let registry = registry();
         let names: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
         let pipeline = Arg::new("pipeline").long("pipeline").value_name("PIPELINE").help(names.join(", "));
+        // A heading of their own puts these options behind those of all pipelines.
+        const HEADING: &str = "Settings of single pipelines";
         // Each key of a registered pipeline becomes an option whose syntax depends on the type of its values.
         registry.keys().into_iter().fold(command.arg(pipeline), |command, (key, families)| {
             let help = format!("{}: {}", families.join(", "), key.about);
-            let arg = Arg::new(key.name).long(option_of(key.name)).help(help);
+            let arg = Arg::new(key.name).long(option_of(key.name)).help(help).help_heading(HEADING);
             command.arg(match key.values {
                 KeyValues::Flag => arg.num_args(0..=1).default_missing_value("true").require_equals(true),
                 KeyValues::Whole(..) => arg.value_name("N").allow_negative_numbers(true),

@@ -54,6 +54,9 @@ pub(crate) struct RunArgs {
     /// Also tell what 10 % more of each resource would bring: by the pipeline's closed form where it holds, else by six more runs.
     #[arg(long)]
     what_if: bool,
+    /// Also print the definitions of latency and of pictures due.
+    #[arg(long)]
+    explain: bool,
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
@@ -79,7 +82,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     if args.json {
         print(&format!("{}\n", with_more(report, more.as_deref())?))?;
     } else if !args.quiet {
-        print(&text(&plan, &results, report, written))?;
+        print(&text((&plan, &results, report), args.explain, written))?;
         print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
     }
     // The exit code tells scripts that the report lacks a latency.
@@ -130,7 +133,7 @@ fn nothing_shown(report: &Report) -> CliError {
     ))
 }
 
-fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf>) -> String {
+fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, written: Option<PathBuf>) -> String {
     let comparison = comparison(plan, results);
     let mut text = String::new();
     // Warnings come first: a scene that is too heavy, then faults of a display.
@@ -141,8 +144,12 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
         let _ = writeln!(text, "WRONG: {fault}\n");
     }
     text.push_str(&table(&[(report, comparison.as_ref())]));
-    let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
-    let _ = writeln!(text, "Pictures due: {}.", report.due_definition);
+    if explain {
+        let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
+        let _ = writeln!(text, "Pictures due: {}.", report.due_definition);
+    } else {
+        text.push_str("\n--explain prints the definitions of latency and of pictures due.\n");
+    }
     if let Some(lines) = report.lines_never_shown().filter(|lines| *lines > 0) {
         let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
     }

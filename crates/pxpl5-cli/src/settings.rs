@@ -41,7 +41,7 @@ pub(crate) struct SettingArgs {
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
     /// walk:M_PER_S along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording
-    /// (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
+    /// (FILE.csv, .txt, .tum, .jsonl: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, pose logs, or any with --columns).
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or
@@ -63,11 +63,12 @@ pub(crate) struct SettingArgs {
     /// default middle.
     #[arg(long)]
     aim: Option<String>,
-    /// Display of the pipeline's pictures: ntsc or hires; default ntsc. (plain and vdrt set --raster.)
+    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (plain and vdrt set
+    /// --raster.)
     #[arg(long)]
     display: Option<String>,
-    /// Raster before a tracked head's eyes: plain, or vdrt (shifted by the error of the predicted pose); default
-    /// plain.
+    /// Raster before a tracked head's eyes: plain or vdrt (shifted by the error of the predicted pose). With shift,
+    /// rotation or depth a device moves pictures to the newest pose. Default plain.
     #[arg(long)]
     raster: Option<String>,
     /// Periods of the display to simulate: NTSC fields of 1/60 s; default 120.

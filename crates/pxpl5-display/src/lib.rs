@@ -22,11 +22,13 @@
 mod aim;
 mod config;
 mod double_buffer;
+mod light;
 mod surface;
 
 pub use aim::{Aim, LightTimes};
 pub use config::{DisplayConfig, DisplayError};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
+pub use light::{Light, Scan};
 pub use surface::{Counter, Surface};
 
 use image::RgbImage;
@@ -154,6 +156,12 @@ pub trait Display: Any + Debug + Send + Sync {
     /// picture line by line needs them.
     fn rows_lit(&self, _period: PeriodNumber) -> (u32, u32) {
         (0, 1)
+    }
+
+    /// Returns the order in which pixels light, and the light of each from the instant on that [`Display::lights`]
+    /// gives. By default pixels light line by line from the top, each for an instant.
+    fn light(&self) -> Light {
+        Light::default()
     }
 
     /// Returns the display's counters since the start of the run.

@@ -1,4 +1,4 @@
-//! The frame buffer of Pixel-Planes 5: two buffers, NTSC video, and the fields that a viewer sees.
+//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by numbers, each with two buffers.
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
@@ -52,6 +52,9 @@
 //! - two transfers at a time into one board (the port forbids them; if they overlap, the one that began last is on top)
 //! - contention of scan and port for the video RAM
 //!
+//! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by numbers. It keeps whole
+//! pictures.
+//!
 //! Sources: TR94 (resolution, two buffers of two fields, two boards in lock-step), NTSC (field, line). The position of
 //! the blanking is assumed.
 
@@ -62,6 +65,7 @@ mod buffer;
 mod config;
 mod error;
 mod ntsc;
+mod panel;
 mod picture;
 mod port;
 mod region;
@@ -76,6 +80,7 @@ pub use config::FrameBufferConfig;
 pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
+pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNumbers};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;

@@ -39,9 +39,9 @@ impl Outline {
     /// Returns the edge between two corners: twice the area of (from, to, pixel centre), in 1/16 square px, rounded
     /// down.
     ///
-    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly if `dx y - dy x
-    /// + floor(k / 16)` is, so rounding changes no pixel. A pixel centre on the line belongs to the triangle only along
-    /// a top or left edge. For other edges k is reduced by one.
+    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly if
+    /// `dx y - dy x + floor(k / 16)` is, so rounding changes no pixel. A pixel centre on the line belongs to the
+    /// triangle only along a top or left edge. For other edges k is reduced by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
         let dx = self.x[to] - self.x[from];

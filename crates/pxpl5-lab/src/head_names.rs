@@ -67,7 +67,7 @@ pub enum MotionError {
 
 /// Names of all motions that [`motion`] accepts, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
-                           walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt or FILE.tum)";
+                           walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
 
 /// Fastest slide in metres per second.
 const FASTEST_SLIDE: f64 = 100.0;
@@ -120,12 +120,12 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
-    [".csv", ".txt", ".tum"].iter().any(|end| name.ends_with(end))
+    [".csv", ".txt", ".tum", ".jsonl"].iter().any(|end| name.ends_with(end))
 }
 
 /// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the
-/// yaw), `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt` or
-/// `.tum` ([`Recording::read`]). Walks need a scene: [`walk`].
+/// yaw), `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`,
+/// `.tum` or `.jsonl` ([`Recording::read`]). Walks need a scene: [`walk`].
 ///
 /// # Errors
 ///

@@ -10,6 +10,8 @@ use tracking::Pose;
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
+    /// When the newest report that the pose rests on was measured; `None` before the first, or where it is not known.
+    pub(crate) measured_at: Option<Time>,
 }
 
 /// The source of a displayed pixel.
@@ -61,7 +63,7 @@ mod tests {
 
     #[test]
     fn what_is_drawn_between_two_moments_is_drawn_for_its_part_of_the_time_between_them() {
-        let moment = |at: u64| Moment { pose: Pose::facing(DQuat::IDENTITY), objects_at: Time(at) };
+        let moment = |at: u64| Moment { pose: Pose::facing(DQuat::IDENTITY), objects_at: Time(at), measured_at: None };
         let light = Time(9_000);
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (0.5, 2_000), (1.0, 3_000)] {
             let between = Drawn::Between { from: moment(1_000), to: moment(3_000), part, on_screen: false };

@@ -1,11 +1,16 @@
 //! Sums of pixel errors, updated during a run or computed after it.
 
 use crate::distribution::Distribution;
-use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid};
+use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, lattice};
+use crate::eye_report::{Device, EyeReport, EyeSum};
+use crate::moved::{Moved, moved};
 use crate::raster::{offset, pose_of_field};
 use crate::registration::{Evaluator, middle};
+use crate::reproject::Move;
+use crate::reprojector::Reprojector;
 use crate::shown::{Drawn, Moment, Seen, Shown};
-use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews};
+use pxpl5_display::{Display, Light, Scan};
+use pxpl5_run::{Cause, Estimator, Every, FinalResults, HeadViews, Reprojection, Warp};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
@@ -41,7 +46,11 @@ impl ErrorSum {
             self.window_from = window_from;
             self.collected = None;
         }
-        let collected = self.collected.get_or_insert_with(|| Collected::keeping(run.samples));
+        let display = run.record.display();
+        let collected = self.collected.get_or_insert_with(|| {
+            let eye = EyeSum::keeping(run.samples, !display.light().is_instant(), showing.device(display));
+            Collected::keeping(run.samples, eye)
+        });
         judging.shown.take(run, head);
         let fields = judging.fields(run);
         // With a cause turned off, recompute the poses that these fields show.
@@ -52,7 +61,8 @@ impl ErrorSum {
         judging.shown.forget(run);
     }
 
-    pub(crate) fn said(self) -> PixelErrors {
+    /// Errors, and what else an eye sees where pixels shine for some time or pictures are moved.
+    pub(crate) fn said(self) -> (PixelErrors, Option<EyeReport>) {
         self.collected.map(Collected::said).unwrap_or_default()
     }
 }
@@ -63,6 +73,7 @@ struct Evaluation {
     judge: Evaluator,
     shown: Shown,
     content: Content,
+    head: Arc<HeadViews>,
     /// True if a pixel is evaluated at the instant it was drawn for, instead of the instant of its light.
     at_one_instant: bool,
     /// First period that is not evaluated yet.
@@ -76,6 +87,40 @@ enum Content {
     /// The display shifts the raster. The offset is that of the current field, if the field has one.
     AdvancedMotion(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
+    /// Pictures are moved to the newest pose.
+    Reprojected(Reprojector),
+    /// The real world is delayed with the pictures: both are of the head where it was measured.
+    DelayedVideo,
+}
+
+impl Showing {
+    /// The device that moves pictures, with its rates on a display.
+    fn device(self, display: &dyn Display) -> Option<Device> {
+        let setting = match self {
+            Self::RasterOffset => Reprojection::VDRT,
+            Self::Reprojected(setting) => setting,
+            Self::Plain | Self::Ideal | Self::DelayedVideo => return None,
+        };
+        let surface = display.surfaces().first()?;
+        const PERIODS: u64 = 60_000;
+        let seconds = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO).as_ms() * 1e-3;
+        let periods_per_s = PERIODS as f64 / seconds;
+        let (_, distance) = display.rows_lit(PeriodNumber::FIRST);
+        let [columns, lines] = [surface.width, surface.height / distance];
+        let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
+        let poses = match (setting.every, display.light().scan) {
+            (_, Scan::Global) | (Every::Field, _) => 1,
+            (Every::Strip, _) => along.div_ceil(Every::STRIP),
+            (Every::Line, _) if along == columns => columns,
+            (Every::Line, _) => lines,
+        };
+        Some(Device {
+            setting,
+            pixels_per_s: f64::from(columns) * f64::from(lines) * periods_per_s,
+            poses_per_s: f64::from(poses) * periods_per_s,
+            has_depth: setting.by == Warp::Depth,
+        })
+    }
 }
 
 impl Evaluation {
@@ -85,11 +130,14 @@ impl Evaluation {
             Showing::Plain => Content::Plain,
             Showing::RasterOffset => Content::AdvancedMotion(estimator, None),
             Showing::Ideal => Content::Ideal(estimator),
+            Showing::Reprojected(setting) => Content::Reprojected(Reprojector::new(head, setting, without)),
+            Showing::DelayedVideo => Content::DelayedVideo,
         };
         Self {
             judge: Evaluator::new(run, head),
             shown: Shown::begin(run, head),
             content,
+            head: Arc::clone(head),
             at_one_instant: without == Some(Cause::ScanOut),
             next: PeriodNumber::FIRST,
         }
@@ -122,60 +170,179 @@ impl Evaluation {
     }
 
     fn judge(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
+        let display = run.record.display();
         // With a shifted raster, first find the offset of this field.
         if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
-            *of_field = pose.map(|pose| offset(estimator, run.record.display(), field, &pose));
+            *of_field = pose.map(|pose| offset(estimator, display, field, &pose));
         }
+        let pixels = grid(display, field);
+        if let Content::Reprojected(reprojector) = &mut self.content {
+            let places = pixels.iter().chain(&lattice(display, field)).map(|(x, y, _)| [*x, *y]).collect::<Vec<_>>();
+            reprojector.begin(display, field, places.into_iter());
+        }
+        let light = display.light();
         let mut of_field = Vec::new();
         let mut centre = None;
         // Evaluate every pixel of the grid.
-        for (i, (x, y, at)) in grid(run.record.display(), field).into_iter().enumerate() {
-            let seen = self.seen(run, [x, y], field, at);
-            let Some(error) = self.error([x, y], at, seen, collected) else { continue };
+        for (i, (x, y, at)) in pixels.into_iter().enumerate() {
+            // What is lit was chosen when the pixel began to shine; where it is seen counts at the centre of its light.
+            let pixel = Pixel { place: [x, y], begins: at, light: at + light.centre() };
+            let error = match &self.content {
+                Content::Reprojected(reprojector) => self.moved_error(run, reprojector, field, pixel, collected),
+                _ => {
+                    let seen = self.seen(run, field, pixel);
+                    self.smear(&seen, pixel, &light, &mut collected.eye);
+                    self.error(pixel, seen, collected)
+                }
+            };
+            let Some(error) = error else { continue };
             of_field.push(error);
             if i == CENTRE {
                 centre = Some(error);
             }
         }
-        let begin = run.record.display().tick(field);
+        self.look_for_edges(run, field, &mut collected.eye);
+        let begin = display.tick(field);
         collected.take(field, begin, &of_field, centre);
     }
 
-    fn seen(&mut self, run: &FinalResults<'_>, place: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+    fn seen(&mut self, run: &FinalResults<'_>, field: PeriodNumber, Pixel { place, begins, light }: Pixel) -> Seen {
         match &mut self.content {
-            Content::Plain => self.shown.seen(run, place, field, at),
+            Content::Plain | Content::DelayedVideo | Content::Reprojected(_) => {
+                self.shown.seen(run, place, field, begins)
+            }
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
-            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, at) {
+            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, begins) {
                 Seen::Complete(Drawn::View(moment)) => {
-                    let shift = offset.map(|offset| offset.shift_px(&self.judge.view, at.0));
+                    let shift = offset.map(|offset| offset.shift_px(&self.judge.view, begins.0));
                     shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
                 other => other,
             },
             Content::Ideal(estimator) => {
-                Seen::Complete(Drawn::View(Moment { pose: estimator.pose(at, at), objects_at: at }))
+                let pose = estimator.pose(begins, light);
+                Seen::Complete(Drawn::View(Moment { pose, objects_at: light, measured_at: None }))
             }
         }
     }
 
     /// Returns the error of a pixel. If there is none, increments the counter of the reason.
-    fn error(&self, [x, y]: [u32; 2], at: Time, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
+    fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
         let (error, unjudged) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
             Seen::Before => (None, &mut errors.before),
-            Seen::Complete(drawn) => {
-                let evaluated_at = if self.at_one_instant { drawn.instant(at) } else { at };
-                (self.judge.error(middle(x, y), &drawn, evaluated_at), &mut errors.behind)
-            }
+            Seen::Complete(drawn) => (self.error_of(pixel, &drawn), &mut errors.behind),
         };
         *unjudged += u64::from(error.is_none());
         error
     }
+
+    fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
+        let place = middle(pixel.place[0], pixel.place[1]);
+        if matches!(self.content, Content::DelayedVideo) {
+            // The camera moves with the head, and its picture is shown with the one that was drawn for the same measurement.
+            let moment = self.judge.moment(drawn);
+            let content = self.judge.content(drawn, place);
+            return self.judge.error_between(place, &content, moment.measured_at?, moment.objects_at);
+        }
+        let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
+        self.judge.error(place, drawn, evaluated_at)
+    }
+
+    /// The error of a pixel that is moved to the newest pose, or why there is none.
+    fn moved_error(
+        &self,
+        run: &FinalResults<'_>,
+        reprojector: &Reprojector,
+        field: PeriodNumber,
+        pixel: Pixel,
+        collected: &mut Collected,
+    ) -> Option<Misregistration> {
+        let display = run.record.display();
+        let Some(newest) = reprojector.newest(display, pixel.place) else {
+            collected.errors.empty += 1;
+            return None;
+        };
+        let by = reprojector.setting.by;
+        let found = moved((&self.judge, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
+        let Collected { errors, eye, .. } = collected;
+        if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
+            eye.looked_at(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
+        }
+        let (content, drawn) = match found {
+            Moved::Shows(content, drawn) => (content, drawn),
+            Moved::NotComplete(seen) => return self.error(pixel, seen, collected),
+            Moved::Beyond | Moved::Hidden => {
+                errors.empty += 1;
+                return None;
+            }
+        };
+        eye.pose(newest.measured_at, pixel.light);
+        self.smear_of(&content, pixel, &display.light(), eye);
+        let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
+        let place = middle(pixel.place[0], pixel.place[1]);
+        let error = self.judge.error_of(place, &content, evaluated_at);
+        errors.behind += u64::from(error.is_none());
+        error
+    }
+
+    /// Takes how far what a pixel shows moves across the screen while the pixel is lit.
+    fn smear(&self, seen: &Seen, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+        let Seen::Complete(drawn) = seen else { return };
+        if !light.is_instant() {
+            self.smear_of(&self.judge.content(drawn, middle(pixel.place[0], pixel.place[1])), pixel, light, eye);
+        }
+    }
+
+    fn smear_of(&self, content: &crate::content::Content, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+        if light.is_instant() {
+            return;
+        }
+        let from = Time(pixel.light.0.saturating_sub(light.width().0 / 2));
+        if let Some(px) = self.judge.way_px(content, from, from + light.width()) {
+            eye.smeared(px);
+        }
+    }
+
+    /// Asks of many places of a field whether what is seen there lies beyond the edge of its picture. Where pictures are moved with depth
+    /// that is known of the pixels that are evaluated, and no others are asked.
+    fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
+        let display = run.record.display();
+        let view = &self.judge.view;
+        for (x, y, at) in lattice(display, field) {
+            let place = middle(x, y);
+            let from = match &self.content {
+                Content::AdvancedMotion(_, offset) => {
+                    let Some(offset) = offset else { continue };
+                    let known = display.tick(field);
+                    let arrived = self.head.report_by(known);
+                    eye.pose(arrived.and_then(|arrived| self.head.measured_at(arrived)), at);
+                    Some(place - offset.shift_px(view, at.0))
+                }
+                Content::Reprojected(reprojector) if reprojector.setting.by != Warp::Depth => {
+                    let Seen::Complete(drawn) = self.shown.seen(run, [x, y], field, at) else { continue };
+                    let Some(newest) = reprojector.newest(display, [x, y]) else { continue };
+                    let pose = self.judge.moment(&drawn).pose;
+                    Move::between(reprojector.setting.by, view, &pose, &newest.pose).source(view, place)
+                }
+                _ => return,
+            };
+            eye.looked_at(!from.is_some_and(|from| view.contains(from)), false);
+        }
+    }
+}
+
+/// A pixel of a field, when it begins to shine, and the centre of its light.
+#[derive(Clone, Copy, Debug)]
+struct Pixel {
+    place: [u32; 2],
+    begins: Time,
+    light: Time,
 }
 
 /// Errors collected so far.
@@ -186,16 +353,17 @@ struct Collected {
     fields_kept: usize,
     /// Counters, and the errors of each field.
     errors: PixelErrors,
+    eye: EyeSum,
 }
 
 /// Number of grid values kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {
-    fn keeping(fields: usize) -> Self {
+    fn keeping(fields: usize, eye: EyeSum) -> Self {
         let both = |limit| [Distribution::keeping(limit), Distribution::keeping(limit)];
         let grid = both(fields.saturating_mul(KEPT_OF_GRID));
-        Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default() }
+        Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default(), eye }
     }
 
     /// Adds the errors of a field that begins at the instant `begin`.
@@ -216,11 +384,12 @@ impl Collected {
         }
     }
 
-    fn said(self) -> PixelErrors {
+    fn said(self) -> (PixelErrors, Option<EyeReport>) {
+        let eye = self.eye.said();
         let [pixels, degrees] = self.grid;
         let [centre_px, centre_deg] = self.centre.map(|errors| errors.percentiles());
         let of_grid = pixels.percentiles();
-        PixelErrors {
+        let errors = PixelErrors {
             judged: of_grid.n,
             pixels: of_grid,
             degrees: degrees.percentiles(),
@@ -228,7 +397,8 @@ impl Collected {
             centre_deg,
             all_px: pixels.kept().to_vec(),
             ..self.errors
-        }
+        };
+        (errors, eye)
     }
 }
 
@@ -293,13 +463,14 @@ mod tests {
     /// degrees.
     #[test]
     fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
-        let mut collected = Collected::keeping(3);
+        let mut collected = Collected::keeping(3, EyeSum::keeping(3, false, None));
         for field in 1..=5 {
             let error = Misregistration { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };
             let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
-        let said = collected.said();
+        let (said, eye) = collected.said();
+        assert_eq!(eye, None);
         let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
         assert_eq!(kept, [1, 2, 3]);
         assert_eq!(

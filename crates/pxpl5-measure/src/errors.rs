@@ -2,7 +2,7 @@
 
 use crate::percentiles::Percentiles;
 use pxpl5_display::Display;
-use pxpl5_run::Raster;
+use pxpl5_run::{Raster, Reprojection};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
@@ -76,7 +76,22 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
             pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));
         }
     }
+    // Not every scan goes from the top; the middle stays in the middle.
+    pixels.sort_by_key(|(_, _, at)| *at);
     pixels
+}
+
+/// Columns and rows of the places that are checked against the edge of the picture.
+const LATTICE: (u32, u32) = (16, 12);
+
+/// Returns the places of [`LATTICE`] in a period, each with the time of its light.
+pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
+    let Some(surface) = display.surfaces().first() else { return Vec::new() };
+    let (first_row, distance) = display.rows_lit(period);
+    let place = |i: u32, of: u32, size: u32| (2 * i + 1) * size / (2 * of);
+    let rows = (0..LATTICE.1).map(|j| place(j, LATTICE.1, surface.height) / distance * distance + first_row);
+    let places = rows.flat_map(|y| (0..LATTICE.0).map(move |i| (place(i, LATTICE.0, surface.width), y)));
+    places.filter_map(|(x, y)| Some((x, y, display.lights(0, x, y, period)?))).collect()
 }
 
 /// The way in which a display shows the pictures of a run.
@@ -91,6 +106,13 @@ pub enum Showing {
     /// The prediction uses all tracker reports that the host has at that time. The reference is computed after the run
     /// and costs no simulated time.
     Ideal,
+    /// Moved to the newest pose by a device.
+    Reprojected(Reprojection),
+    /// As they were drawn, before a video of the real world that is delayed with them (I3D95, 2.1).
+    ///
+    /// Both are of the instant at which the head was measured, so that the tracker's error remains. The world itself lags
+    /// by the time from the head to light.
+    DelayedVideo,
 }
 
 impl From<Raster> for Showing {
@@ -98,6 +120,7 @@ impl From<Raster> for Showing {
         match raster {
             Raster::Plain => Self::Plain,
             Raster::Vdrt => Self::RasterOffset,
+            Raster::Reprojected(setting) => Self::Reprojected(setting),
         }
     }
 }

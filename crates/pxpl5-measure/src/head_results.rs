@@ -3,6 +3,7 @@
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
+use crate::eye_report::EyeReport;
 use crate::head_sum::HeadResults;
 use crate::step_sum::{StepSum, Steps};
 use crate::turn_sum::{RotationLatencySum, Turns};
@@ -41,7 +42,7 @@ impl PixelErrors {
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let said = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
-        said.map_or_else(|| Self::judged(outcome, showing, None), |said| said.error.clone())
+        said.map_or_else(|| judged(outcome, showing, None).0, |said| said.error.clone())
     }
 
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
@@ -49,14 +50,30 @@ impl PixelErrors {
     /// For a run that discarded its records, the result covers only the last periods.
     #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
-        Self::judged(outcome, showing, Some(cause))
+        judged(outcome, showing, Some(cause)).0
     }
+}
 
-    fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> Self {
-        let mut sum = ErrorSum::of(showing, without);
-        sum.take(&outcome.settled());
-        sum.said()
+fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
+    let mut sum = ErrorSum::of(showing, without);
+    sum.take(&outcome.settled());
+    sum.said()
+}
+
+impl EyeReport {
+    /// Evaluates a run with a head whose pictures are shown so; `None` without a head, and where pixels light for an instant in their own
+    /// places.
+    #[must_use]
+    pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
+        outcome.head().and_then(|_| judged(outcome, showing, None).1)
     }
+}
+
+/// Errors on the raster before the eyes, and what else an eye sees; `None` of a run without a head.
+pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
+    let showing = outcome.head()?.head().raster().into();
+    let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
+    Some(said.unwrap_or_else(|| judged(outcome, showing, None)))
 }
 
 /// Returns the pixel errors as the head's display shows the pictures, or `None` for a run without a head.

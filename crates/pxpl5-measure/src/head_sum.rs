@@ -3,6 +3,7 @@
 use crate::budget::{Budget, BudgetSum};
 use crate::error_sum::ErrorSum;
 use crate::errors::PixelErrors;
+use crate::eye_report::EyeReport;
 use crate::step_sum::{StepSum, Steps};
 use crate::turn_sum::{RotationLatencySum, Turns};
 use pxpl5_run::{FinalResults, StreamingObserver};
@@ -39,7 +40,8 @@ impl StreamingObserver for HeadSum {
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
         let Self { budget, turns, steps, errors } = *self;
         let (turns, steps) = (turns.said(), steps.result());
-        Box::new(HeadResults { end_to_end: budget.said(), turns, steps, error: errors.said() })
+        let (error, eye) = errors.said();
+        Box::new(HeadResults { end_to_end: budget.said(), turns, steps, error, eye })
     }
 }
 
@@ -50,4 +52,5 @@ pub(crate) struct HeadResults {
     pub(crate) turns: Turns,
     pub(crate) steps: Vec<Steps>,
     pub(crate) error: PixelErrors,
+    pub(crate) eye: Option<EyeReport>,
 }

@@ -6,6 +6,7 @@
 //! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
 //! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
+//! | What does a device do that moves pictures to the newest pose? | [`EyeReport`], [`reproject`] |
 //! | How busy was each board, and what does the latency wait for? | [`Utilisation`], [`CriticalPath`] |
 //! | All results as numbers with units | [`Report`], [`Measure`] |
 //!
@@ -21,18 +22,23 @@ mod distribution;
 mod drawn;
 mod error_sum;
 mod errors;
+mod eye_report;
 mod faces_report;
 mod head_results;
 mod head_sum;
 mod latency;
 mod latency_curve;
 mod measured;
+mod moved;
 mod percentiles;
+mod picture_mover;
 mod pictures;
 mod quantity;
 mod raster;
 mod registration;
 mod report;
+mod reproject;
+mod reprojector;
 mod resource;
 mod screen;
 mod shown;
@@ -48,6 +54,7 @@ pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
 pub use critical_path::{CriticalPath, PICTURES_FOLLOWED, PathPart};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};
+pub use eye_report::{EyeReport, ReprojectionReport};
 pub use faces_report::{FacesReport, MemoryReport};
 pub use head_results::pixel_errors;
 pub use head_sum::HeadSum;
@@ -61,6 +68,7 @@ pub use quantity::{Measure, QUANTITIES, Quantity, Results};
 pub use raster::{RasterOffsets, Vdrt};
 pub use registration::Registration;
 pub use report::{HeadReport, Report};
+pub use reproject::reproject;
 pub use resource::Resource;
 pub use summary::summary;
 pub use too_heavy::TooHeavy;

@@ -58,7 +58,7 @@ pub fn screen(
     let Some(offsets) = offsets else { return seen };
     let mut shifted = RgbImage::new(seen.width(), seen.height());
     // An interlaced screen still shows the lines of the previous period.
-    if let Some(before) = period.before(1) {
+    if let Some(before) = period.before(1).filter(|before| display.rows_lit(*before) != display.rows_lit(period)) {
         offsets.shift_rows(&seen, before, &mut shifted);
     }
     offsets.shift_rows(&seen, period, &mut shifted);

@@ -1,5 +1,6 @@
 //! Raster offset of VDRT: the display shifts the picture during scan-out to correct its pose.
 
+use crate::picture_mover::PictureMover;
 use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
@@ -7,6 +8,7 @@ use pxpl5_display::Display;
 use pxpl5_run::{Estimator, FinalResults, Outcome, Raster};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use std::rc::Rc;
 use tracking::view::{HmdView, RasterOffset};
 use tracking::{Pose, rotation};
 
@@ -61,43 +63,65 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// Raster offsets of all fields of a run.
+/// The way in which a display moves the pictures of a run: the raster offset of every field, or a device that moves
+/// pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
     view: HmdView,
-    offsets: Vec<Option<RasterOffset>>,
+    moved_by: MovedBy<'a>,
+}
+
+#[derive(Clone, Debug)]
+enum MovedBy<'a> {
+    /// The offset of every field.
+    Offsets(Vec<Option<RasterOffset>>),
+    Device(Rc<PictureMover<'a>>),
 }
 
 impl<'a> RasterOffsets<'a> {
-    /// Returns the offsets of a run, or `None` if the head's display does not shift its raster.
+    /// Returns the moves of a run's pictures, or `None` if the head's display shows them in their own places.
     ///
-    /// A field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
+    /// Under VDRT a field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let head = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt)?;
+        let head = outcome.head()?;
         let run = outcome.settled();
-        let shown = Shown::of_run(&run, head);
         let display = outcome.record().display();
+        let view = view_of(display, &run.hmd);
+        match head.head().raster() {
+            Raster::Plain => return None,
+            Raster::Reprojected(setting) => {
+                let moved_by = MovedBy::Device(Rc::new(PictureMover::new(run, head, setting)));
+                return Some(Self { display, view, moved_by });
+            }
+            Raster::Vdrt => {}
+        }
+        let shown = Shown::of_run(&run, head);
         let mut vdrt = Vdrt::new(Estimator::new(head, None), display);
         let offsets = PeriodNumber::FIRST.until(run.until).map(|field| {
             let pose = pose_of_field(&run, &shown, field)?;
             Some(vdrt.offset(field, &pose))
         });
-        Some(Self { display, view: view_of(display, &run.hmd), offsets: offsets.collect() })
+        Some(Self { display, view, moved_by: MovedBy::Offsets(offsets.collect()) })
     }
 
-    /// Returns the offset in one display period. `None` if nothing is shown or the picture was not drawn for a single
-    /// pose.
+    /// Returns the offset in one display period. `None` if nothing is shown, if the picture was not drawn for a single
+    /// pose, or if a device moves pictures otherwise.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
-        self.offsets.get(usize::try_from(field.0).ok()?)?.as_ref()
+        let MovedBy::Offsets(offsets) = &self.moved_by else { return None };
+        offsets.get(usize::try_from(field.0).ok()?)?.as_ref()
     }
 
     /// Copies the rows lit in a field from `screen` to `shifted`, moved by the field's offset in whole pixels.
     ///
     /// Uncovered pixels become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
+        if let MovedBy::Device(mover) = &self.moved_by {
+            mover.move_rows(screen, field, shifted);
+            return;
+        }
         let offset = self.field(field);
         let (first_row, row_distance) = self.display.rows_lit(field);
         for y in (first_row..screen.height()).step_by(row_distance as usize) {

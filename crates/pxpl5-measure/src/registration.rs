@@ -1,6 +1,7 @@
 //! Registration error: distance between a pixel and the correct position of its content at the time of its light.
 
 use crate::content::{Content, Contents};
+use crate::reproject::direction;
 use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{FinalResults, HeadViews, Outcome};
@@ -31,8 +32,7 @@ impl Evaluator {
 
     /// Returns the direction of a picture position in head axes, scaled to 1 m of depth.
     fn direction(&self, place: DVec2) -> DVec3 {
-        let from_centre = (place - self.view.centre_px()) / self.view.focal_px();
-        DVec3::new(from_centre.x, -from_centre.y, -1.0)
+        direction(&self.view, place)
     }
 
     /// Returns the content at a picture position of a view. A ray that hits nothing gets a point at `distance_m`.
@@ -60,7 +60,7 @@ impl Evaluator {
     }
 
     /// Returns the point of the scene that a drawn pixel shows.
-    fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
+    pub(crate) fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
@@ -86,11 +86,83 @@ impl Evaluator {
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<Misregistration> {
-        let content = self.contents.place(&self.content(drawn, place), at);
-        let seen = self.head.truth(at).view_of(content);
+        self.error_of(place, &self.content(drawn, place), at)
+    }
+
+    /// Returns the error of content at a place of the screen. `None` if the content should be behind the eye.
+    pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
+        self.error_between(place, content, at, at)
+    }
+
+    /// Returns the error of content with the head's pose of one time and the moving objects of another.
+    pub(crate) fn error_between(
+        &self,
+        place: DVec2,
+        content: &Content,
+        head_at: Time,
+        objects_at: Time,
+    ) -> Option<Misregistration> {
+        let content = self.contents.place(content, objects_at);
+        let seen = self.head.truth(head_at).view_of(content);
         let offset_px = place - self.view.project(seen)?;
         let degrees = angle_between(self.direction(place), seen).to_degrees();
         Some(Misregistration { offset_px, pixels: offset_px.length(), degrees })
+    }
+}
+
+/// Content that a picture with depth has for a place of the screen, seen from another pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Warped {
+    /// The content, with its place in the picture.
+    Seen(Content, DVec2),
+    /// No content, because it lies beyond the edge of the picture.
+    Beyond,
+    /// No content, because something hides it in the picture.
+    Hidden,
+}
+
+/// Least difference in depth, relative to the depth, by which one content hides another.
+const NEARER: f64 = 1e-4;
+
+impl Evaluator {
+    /// Returns the content of a picture at a place of the screen, with the picture moved to a pose by its depth.
+    pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
+        let ahead = now.orientation * self.direction(place);
+        let met = self.contents.met(now.position, ahead, drawn.objects_at);
+        let Some(content) = met.or_else(|| self.on_background(drawn, now, ahead)) else { return Warped::Beyond };
+        let point = drawn.pose.view_of(self.contents.place(&content, drawn.objects_at));
+        let Some(source) = self.view.project(point).filter(|source| self.view.contains(*source)) else {
+            return Warped::Beyond;
+        };
+        let before = self.contents.place(&self.met(drawn, source), drawn.objects_at);
+        let is_hidden = -drawn.pose.view_of(before).z < -point.z * (1.0 - NEARER);
+        if is_hidden { Warped::Hidden } else { Warped::Seen(content, source) }
+    }
+
+    /// Returns the point at which a ray meets the background of a picture, a plane at the scene's distance.
+    fn on_background(&self, drawn: &Moment, now: &Pose, ahead: DVec3) -> Option<Content> {
+        let axis = drawn.pose.orientation * DVec3::NEG_Z;
+        let begin = (now.position - drawn.pose.position).dot(axis);
+        let way = (self.distance_m - begin) / ahead.dot(axis);
+        (way.is_finite() && way > 0.0).then(|| Content::fixed(now.position + ahead * way))
+    }
+
+    /// Returns the moment for which a pixel was drawn. Between two views it is interpolated.
+    pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
+        match drawn {
+            Drawn::View(moment) | Drawn::AdvancedMotion(moment, _) => *moment,
+            Drawn::Between { from, to, part, .. } => between(from, to, *part),
+            Drawn::Faces(faces) => faces.memories[0].0,
+        }
+    }
+
+    /// Returns the distance that content moves across the screen between two times, in pixels. `None` if it is behind the eye.
+    pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {
+        let place = |at: Time| {
+            let point = self.contents.place(content, at);
+            self.view.project(self.head.truth(at).view_of(point))
+        };
+        Some(place(from)?.distance(place(to)?))
     }
 }
 
@@ -98,7 +170,12 @@ impl Evaluator {
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
     let begin = from.objects_at.0 as f64;
     let end = to.objects_at.0 as f64;
-    Moment { pose: from.pose.interpolate(&to.pose, part), objects_at: Time((begin + (end - begin) * part) as u64) }
+    let measured_at = from.measured_at.zip(to.measured_at).map(|(from, to)| {
+        let [begin, end] = [from, to].map(|at| at.0 as f64);
+        Time((begin + (end - begin) * part) as u64)
+    });
+    let objects_at = Time((begin + (end - begin) * part) as u64);
+    Moment { pose: from.pose.interpolate(&to.pose, part), objects_at, measured_at }
 }
 
 /// Returns the angle between two vectors in radians. The formula is accurate for small angles too.
@@ -151,9 +228,9 @@ mod tests {
     /// Interpolates objects and the head with the same factor.
     #[test]
     fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
-        let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at) };
+        let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (1.0, 3_000)] {
-            let Moment { pose, objects_at } = between(&moment(1_000), &moment(3_000), part);
+            let Moment { pose, objects_at, .. } = between(&moment(1_000), &moment(3_000), part);
             assert_eq!(objects_at, Time(expected), "{part}");
             assert!((pose.position.x - expected as f64).abs() < 1e-9, "{part}");
         }

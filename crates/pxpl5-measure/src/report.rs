@@ -3,8 +3,9 @@
 use crate::budget::Budget;
 use crate::critical_path::CriticalPath;
 use crate::errors::PixelErrors;
+use crate::eye_report::EyeReport;
 use crate::faces_report::FacesReport;
-use crate::head_results::{missing_results_warning, pixel_errors};
+use crate::head_results::{errors_and_eye, missing_results_warning};
 use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
@@ -98,6 +99,9 @@ pub struct Report {
     /// Results that concern the head. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
+    /// Smear, and results of a device that moves pictures. `None` if pixels light for an instant in their own places.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eye: Option<EyeReport>,
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
@@ -145,8 +149,9 @@ pub struct HeadReport {
 }
 
 impl HeadReport {
-    fn of_head(outcome: &Outcome, head: &Head) -> Option<Self> {
-        Some(Self {
+    fn of_head(outcome: &Outcome, head: &Head) -> Option<(Self, Option<EyeReport>)> {
+        let (error, eye) = errors_and_eye(outcome)?;
+        let report = Self {
             tracker: head.tracker().config().name.clone(),
             predictor: format!("{:?}", head.predictor_kind()),
             aim: head.aim(),
@@ -156,8 +161,9 @@ impl HeadReport {
             judged_at_m: head.judge_at_m(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
-            error: pixel_errors(outcome)?,
-        })
+            error,
+        };
+        Some((report, eye))
     }
 }
 
@@ -200,6 +206,7 @@ impl Report {
         let record = outcome.record();
         let due = outcome.due();
         let tally = outcome.tally();
+        let (head, eye) = outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())).unzip();
         let mut report = Self {
             // Identity of the run.
             schema: Self::SCHEMA.to_owned(),
@@ -245,7 +252,8 @@ impl Report {
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
             // Parts that only some runs have.
-            head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
+            head,
+            eye: eye.flatten(),
             arp: FacesReport::of(outcome),
             hmd: hmd_of(outcome),
             utilisation: Utilisation::of(record),

@@ -205,7 +205,7 @@ fn views_of(source: Source) -> Vec<ViewNumber> {
 }
 
 fn viewed(sampled: &SampledPose) -> Viewed {
-    let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at };
+    let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at, measured_at: sampled.measured_at };
     Viewed { known: sampled.known, moment }
 }
 

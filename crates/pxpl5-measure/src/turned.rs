@@ -81,9 +81,9 @@ impl LatchedFaces {
         let orientation = self.turns.borrow_mut().at(&self.head, self.without, report, aimed_at);
         // Each memory keeps its position but is seen in this orientation.
         let seen = self.history.at(field).filter_map(|shown| {
-            let Moment { pose, objects_at } = moment(shown.note.view)?;
+            let Moment { pose, objects_at, measured_at } = moment(shown.note.view)?;
             let pose = Pose { orientation, ..pose };
-            Some((Moment { pose, objects_at }, shown.note.structures.clone()))
+            Some((Moment { pose, objects_at, measured_at }, shown.note.structures.clone()))
         });
         let memories: Vec<_> = seen.collect();
         (!memories.is_empty()).then_some(FacesSeen { memories, aimed_at })

@@ -1,14 +1,16 @@
-//! The displays of the papers: one line for each.
+//! The displays: those of the papers, two of today and one of your own numbers. One line for each.
 
 use crate::registry::DisplayEntry;
 use address_recalculation::ArpConfig;
-use pxpl5_framebuffer::FrameBufferConfig;
-use pxpl5_hires::HiResConfig;
+use pxpl5_framebuffer::{FrameBufferConfig, HiResConfig, LcdConfig, OledConfig, PanelConfig};
 
 pub(crate) fn entries() -> Vec<DisplayEntry> {
     vec![
         DisplayEntry { name: "ntsc", config: || Box::new(FrameBufferConfig::NTSC) },
         DisplayEntry { name: "hires", config: || Box::new(HiResConfig::PAPERS) },
+        DisplayEntry { name: "oled-90", config: || Box::new(OledConfig::PAPERS) },
+        DisplayEntry { name: "lcd-120", config: || Box::new(LcdConfig::PAPERS) },
+        DisplayEntry { name: "panel", config: || Box::new(PanelConfig::PAPERS) },
         DisplayEntry { name: "arp", config: || Box::new(ArpConfig::MACHINE) },
     ]
 }

@@ -1,5 +1,6 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
+use crate::reprojection::Reprojection;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -12,15 +13,30 @@ pub enum Raster {
     Plain,
     /// The picture is shifted during the scan by the error of the pose that it was drawn for (VDRT, Breglia 1981).
     Vdrt,
+    /// Moved to the newest pose by a device.
+    Reprojected(Reprojection),
 }
 
 impl Raster {
-    /// All corrections, with their names on the command line.
+    /// All corrections without numbers of their own, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
+
+    /// Returns how it moves pictures, VDRT as the device that it is; `None` where it does not.
+    #[must_use]
+    pub const fn reprojection(self) -> Option<Reprojection> {
+        match self {
+            Self::Plain => None,
+            Self::Vdrt => Some(Reprojection::VDRT),
+            Self::Reprojected(reprojection) => Some(reprojection),
+        }
+    }
 }
 
 impl fmt::Display for Raster {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Self::Reprojected(reprojection) = self {
+            return write!(f, "{reprojection}");
+        }
         let name = Self::ALL.iter().find(|(_, raster)| raster == self).map_or("", |(name, _)| name);
         f.write_str(name)
     }

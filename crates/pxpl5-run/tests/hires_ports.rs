@@ -1,6 +1,6 @@
 //! Tests of the ports of the high-resolution frame buffer: the number of pictures a second that the ports can receive.
 
-use pxpl5_hires::HiResConfig;
+use pxpl5_framebuffer::HiResConfig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl};
 use pxpl5_scene::builtin;

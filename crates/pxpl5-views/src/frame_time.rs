@@ -73,8 +73,7 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
 mod tests {
     use super::*;
     use pxpl5_display::DisplayConfig;
-    use pxpl5_framebuffer::{FrameBufferConfig, VideoTiming};
-    use pxpl5_hires::HiResConfig;
+    use pxpl5_framebuffer::{FrameBufferConfig, HiResConfig, VideoTiming};
     use pxpl5_wire::NodeId;
 
     fn seconds(config: &dyn DisplayConfig) -> (u16, u16) {

@@ -1,6 +1,6 @@
 //! Tests of views with several kinds of displays.
 
-use pxpl5_hires::HiResConfig;
+use pxpl5_framebuffer::HiResConfig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Report;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl, Slats};

@@ -431,7 +431,8 @@ const TESTS = {
     assert.ok(share > 0.1);
     assert.ok((await lit()) > 3, "the aircraft is seen");
     const stands = await shownMs();
-    await later(300);
+    // The last messages have crossed the diagram then.
+    await later(1500);
     assert.equal(await shownMs(), stands);
     const [cpu, begun] = [cpuSeconds(), Date.now()];
     await later(10000);

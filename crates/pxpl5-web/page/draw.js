@@ -12,6 +12,13 @@ export function inMs(ms) {
   return `${ms.toFixed(Math.abs(ms) >= 10 ? 1 : 2)} ms`;
 }
 
+/** Numbers of a board's description for reading: 31.3 ms, not 31332.000 us. */
+export function humane(text) {
+  return text
+    .replace(/(\d+\.\d{3}) us/g, (_, us) => (Number(us) >= 1000 ? inMs(Number(us) / 1000) : `${Number(us).toFixed(1)} us`))
+    .replace(/\b(\d{4,}) bytes/g, (_, bytes) => `${Number(bytes).toLocaleString("en")} bytes`);
+}
+
 /** Bytes of a picture into a canvas of its size. */
 export function picture(canvas, bytes) {
   if (bytes.length !== 4 * canvas.width * canvas.height) return;

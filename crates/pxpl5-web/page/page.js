@@ -1,8 +1,11 @@
 // The page: stories, and the laboratory with settings from the form or the address; a run in pieces, and what there is to see of
 // it between them.
 import { Live, Recorder, csv } from "./recording.js";
-import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, inMs, layOutEyes, nameOf, picture } from "./draw.js";
+import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
 import { Diagram } from "./diagram.js";
+import { explain } from "./hints.js";
+import { save, wholePicture } from "./save.js";
+import { spinningScreen } from "./spin.js";
 import { FIRST_SCREEN, STORIES, inPs, storyOf } from "./stories.js";
 
 const at = (id) => document.getElementById(id);
@@ -375,13 +378,6 @@ function draw(seen) {
   if ((failed || state.over) && running) pause();
 }
 
-/** Numbers of a board's description for reading: 31.3 ms, not 31332.000 us. */
-function humane(text) {
-  return text
-    .replace(/(\d+\.\d{3}) us/g, (_, us) => (Number(us) >= 1000 ? inMs(Number(us) / 1000) : `${Number(us).toFixed(1)} us`))
-    .replace(/\b(\d{4,}) bytes/g, (_, bytes) => `${Number(bytes).toLocaleString("en")} bytes`);
-}
-
 /** Says in words what the pictures show, for those who do not see them: when the run stands, not while it goes on. */
 function describe() {
   machines.forEach(({ eyes }, n) => {
@@ -692,69 +688,6 @@ addEventListener("drop", (event) => {
   if (event.dataTransfer.files[0]) take(event.dataTransfer.files[0]);
 });
 
-// The spinning screen.
-
-at("volume-draw").addEventListener("click", async () => {
-  pause();
-  at("volume-says").textContent = "Drawing ...";
-  try {
-    const begun = performance.now();
-    const [slices, width, height] = await ask("volume");
-    at("volume-says").textContent = `${slices} slices drawn in ${((performance.now() - begun) / 1000).toFixed(1)} s`;
-    Object.assign(at("slice"), { max: slices - 1, value: Math.round(slices / 4) });
-    Object.assign(at("slice-picture"), { width, height });
-    at("volume").hidden = false;
-    await Promise.all([slice(), round()]);
-  } catch (error) {
-    at("volume-says").textContent = "";
-    await refused(error);
-  }
-});
-
-async function slice() {
-  at("slice-number").textContent = at("slice").value;
-  picture(at("slice-picture"), await ask("slice", { number: Number(at("slice").value) }));
-}
-
-async function round() {
-  const [azimuth, elevation] = ["azimuth", "elevation"].map((id) => Number(at(id).value));
-  picture(at("volume-picture"), await ask("round", { azimuth, elevation, side: at("volume-picture").width }));
-}
-
-at("slice").addEventListener("input", slice);
-for (const id of ["azimuth", "elevation"]) at(id).addEventListener("change", round);
-
-// Explanations of terms.
-
-function explain(glossary) {
-  for (const term of document.querySelectorAll("[data-term]")) {
-    const sentence = glossary[term.dataset.term];
-    if (!sentence) continue;
-    // Inside of what has the focus anyway the term itself needs none.
-    if (!term.closest("button, label, summary")) term.tabIndex = 0;
-    term.setAttribute("aria-description", sentence);
-    const show = () => {
-      const place = term.getBoundingClientRect();
-      const hint = at("hint");
-      hint.textContent = sentence;
-      hint.hidden = false;
-      // Above the term, where there is room, so that what stands below it stays in sight.
-      const isRoom = place.top > hint.offsetHeight + 12;
-      hint.style.left = `${Math.max(8, Math.min(place.left, innerWidth - hint.offsetWidth - 8))}px`;
-      hint.style.top = `${(isRoom ? place.top - hint.offsetHeight - 6 : place.bottom + 6) + scrollY}px`;
-    };
-    const hide = () => (at("hint").hidden = true);
-    const holder = term.closest("label")?.querySelector("select, input") ?? term.closest("button, summary") ?? term;
-    // Not at once, so that nothing is covered on the way to something else; what is pressed is not explained.
-    let soon = 0;
-    term.addEventListener("pointerenter", () => (soon = setTimeout(show, 350)));
-    term.addEventListener("pointerleave", () => { clearTimeout(soon); hide(); });
-    holder.addEventListener("pointerdown", () => { clearTimeout(soon); hide(); });
-    holder.addEventListener("focus", () => holder.matches(":focus-visible") && show());
-    holder.addEventListener("blur", hide);
-  }
-}
-
 addEventListener("keydown", (event) => {
   if (event.key === "Escape") at("hint").hidden = true;
   if (event.ctrlKey || event.altKey || event.metaKey || machines.length === 0) return;
@@ -789,29 +722,7 @@ document.addEventListener("fullscreenchange", () => {
 
 const stamp = () => `pxpl5-${pipelines().join("-and-")}-${Math.round(reached / 1e9)}ms`;
 
-function save(blob, name) {
-  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
-/** All pictures of all machines beside each other, with what lies over them. */
-at("save-picture").addEventListener("click", () => {
-  const all = machines.flatMap(({ eyes }) => eyes.slice(0, eyesShown));
-  const whole = document.createElement("canvas");
-  whole.width = all.reduce((sum, { canvas }) => sum + canvas.width, 0);
-  whole.height = Math.max(...all.map(({ canvas }) => canvas.height));
-  const context = whole.getContext("2d");
-  let left = 0;
-  for (const { canvas, over } of all) {
-    context.drawImage(canvas, left, 0);
-    context.drawImage(over, left, 0);
-    left += canvas.width;
-  }
-  whole.toBlob((blob) => save(blob, `${stamp()}.png`));
-});
+at("save-picture").addEventListener("click", async () => save(await wholePicture(machines, eyesShown), `${stamp()}.png`));
 
 /** What was not measured is null. */
 function report() {
@@ -856,6 +767,8 @@ at("copy").addEventListener("click", async () => {
     at("copied").textContent = "The browser does not let this page copy: use the link's menu.";
   }
 });
+
+spinningScreen({ ask, pause, refused });
 
 // Stories.
 
@@ -912,7 +825,11 @@ async function prepare(tale, number) {
   return true;
 }
 
+/** True if the machine has been loaded; before, there is nothing to tell of. */
+const isReady = () => document.documentElement.dataset.ready === "true";
+
 async function tell(name, number, isNext = false) {
+  if (!isReady()) return;
   turns += 1;
   const mine = turns;
   const tale = STORIES[name];
@@ -943,6 +860,7 @@ async function tell(name, number, isNext = false) {
 }
 
 function toLab() {
+  if (!isReady()) return null;
   turns += 1;
   const wasStart = mode === "start";
   mode = "lab";
@@ -960,6 +878,7 @@ function toLab() {
 }
 
 async function toStart() {
+  if (!isReady()) return;
   turns += 1;
   mode = "start";
   telling = null;

@@ -159,7 +159,7 @@ export const STORIES = {
       },
       {
         title: "Turn the head",
-        say: "The head turns, and the picture turns at once, although the six faces have not been drawn again. The wire frame of the real world lies almost on it, much closer than under Rendering Control.",
+        say: "The head turns, and the picture turns at once, although the faces in the memory are older. The wire frame of the real world lies almost on it, much closer than under Rendering Control.",
         path: swing(18, 2), ms: 1050, slower: 2, show: ["faces", "wire"],
         paused: "Stopped in a fast turn: the gap that is left is the delay of the tracker, not of the drawing.",
       },

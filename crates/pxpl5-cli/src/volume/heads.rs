@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Args, Debug)]
 pub(super) struct HeadArgs {
     /// View along a motion of a head, and compare with a head-mounted display: still, pan:DEG_PER_S, slide:M_PER_S,
-    /// sine:DEG:HZ, pendulum, synthetic:SEED or a recording (FILE.csv, FILE.txt or FILE.tum).
+    /// sine:DEG:HZ, pendulum, synthetic:SEED or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl).
     #[arg(long, value_name = "MOTION", conflicts_with_all = ["azimuth", "elevation", "distance", "cut", "lambert", "undithered", "exposure"])]
     pub(super) head: Option<String>,
     /// Latency of the head-mounted display, ms; default: the volume's own latency by the model of its time.

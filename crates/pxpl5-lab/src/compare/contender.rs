@@ -20,13 +20,20 @@ const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 /// Settings of [`TOUCHED`] with a raster that is shifted before the eyes.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
+/// Settings of [`TOUCHED`] without prediction: the video of the real world is delayed until the pictures of its instant are there.
+const DELAYED: &[(&str, &str)] = &[("binning", "touched"), ("head.predict", "none")];
+
 impl ComparedPipeline {
     fn plain(pipeline: &'static str) -> Self {
         Self { name: pipeline.to_owned(), pipeline, settings: &[], showing: Showing::Plain }
     }
 
     fn of_slats(name: &str, showing: Showing) -> Self {
-        let settings = if showing == Showing::RasterOffset { SHIFTED } else { TOUCHED };
+        let settings = match showing {
+            Showing::RasterOffset => SHIFTED,
+            Showing::DelayedVideo => DELAYED,
+            _ => TOUCHED,
+        };
         Self { name: name.to_owned(), pipeline: "slats", settings, showing }
     }
 }
@@ -52,7 +59,7 @@ pub fn usual_rows(registry: &Registry) -> Vec<String> {
 }
 
 /// Returns a row for every compared pipeline of the registry, in its order. The variants of Slats (touched regions,
-/// raster offset, reference) follow Slats.
+/// raster offset, delayed video, reference) follow Slats.
 pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
@@ -60,6 +67,7 @@ pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
         if entry.name == "slats" {
             all.push(ComparedPipeline::of_slats("slats-touched", Showing::Plain));
             all.push(ComparedPipeline::of_slats("vdrt", Showing::RasterOffset));
+            all.push(ComparedPipeline::of_slats("delayed-video", Showing::DelayedVideo));
             all.push(ComparedPipeline::of_slats("ideal", Showing::Ideal));
         }
     }

@@ -2,10 +2,10 @@
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
-use super::{ExperimentFile, FileError, tracking_numbers};
+use super::{ExperimentFile, FileError, reprojection, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
-use pxpl5_run::{Aim, Head, Pipeline, Raster};
+use pxpl5_run::{Aim, Head, Pipeline};
 use std::sync::Arc;
 use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
@@ -40,15 +40,8 @@ impl HeadChoice {
     /// `tracking.` key is set.
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
-        let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
+        let raster = reprojection::read(file, pipeline)?;
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
-        // A raster offset needs a picture of a single pose.
-        if let (Raster::Vdrt, false, Some(setting)) = (raster, pipeline.has_one_pose(), file.get("head.raster")) {
-            let place = setting.place.clone();
-            let key = "head.raster = vdrt".to_owned();
-            let applies_to = "rendering-control, slats and jitp-field, whose pictures are of one pose".to_owned();
-            return Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to });
-        }
         // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
@@ -106,11 +99,11 @@ impl HeadChoice {
             ("head.tracker", self.tracker.clone()),
             ("head.predict", self.predict.clone()),
             ("head.filter", filter.to_owned()),
-            ("head.raster", self.head.raster().to_string()),
             ("head.aim", self.head.aim().to_string()),
         ]
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
+        all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {

@@ -36,7 +36,7 @@ const COMMON: &[(&str, &str)] = &[
     (
         "head.motion",
         "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
-         or a recording (.csv, .txt, .tum), relative to the experiment file, seen through a tracker",
+         or a recording (.csv, .txt, .tum, .jsonl), relative to the experiment file, seen through a tracker",
     ),
     ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
     ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),
@@ -52,7 +52,19 @@ const COMMON: &[(&str, &str)] = &[
           (those of tracking.filter)",
     ),
     ("head.judge_at", "metres from the eye at which pixel errors are judged; default where the scene's content lies"),
-    ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
+    (
+        "head.raster",
+        "plain, vdrt (the raster is shifted by what the pose was wrong), or a device that moves pictures to the newest pose by shift, \
+         rotation (timewarp) or depth",
+    ),
+    (
+        super::reprojection::EVERY,
+        "how often a device takes the newest pose: field (default), strip of 128 lines, or line",
+    ),
+    (
+        super::reprojection::LATENCY,
+        "from the pose to the first light of what it moves, 0 to 100000; default 2000 a field, 500 a strip, 100 a line",
+    ),
     ("seed", "seed of the head motion's sway, or of the tracker's noise"),
     ("fields", "periods of the display to simulate: NTSC fields"),
     ("pixels", "off, lazy or all"),
@@ -76,8 +88,8 @@ const COMMON: &[(&str, &str)] = &[
     ("published.value", "its published value"),
 ];
 
-/// Former names of keys, each with the current name.
-const RENAMED: [(&str, &str); 1] = [("head.display", "head.raster")];
+/// Other names of keys, each with the current name.
+const RENAMED: [(&str, &str); 2] = [("head.display", "head.raster"), ("display.preset", "display")];
 
 /// Returns all keys except the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
 #[must_use]
@@ -89,6 +101,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
         common("pipeline", &pipelines.join(", ")),
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
+    all.extend(super::display::keys().map(|(path, about)| common(&path, about)));
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
     all.extend(hmd::NUMBERS.iter().map(|(path, about, ..)| common(path, about)));
     // One key for each column of a recording.

@@ -24,6 +24,7 @@
 //! [`ExperimentFile::keys_of`] lists all keys. Keys without a value get the defaults of [`Plan`]. An unknown key is
 //! an error that names the most similar valid key.
 
+mod display;
 mod error;
 mod head;
 mod hmd;
@@ -31,6 +32,7 @@ mod keys;
 mod motion;
 mod plan;
 mod read;
+mod reprojection;
 mod scene;
 mod text;
 mod tracking_numbers;

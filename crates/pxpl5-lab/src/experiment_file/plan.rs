@@ -4,7 +4,7 @@ use super::head::HeadChoice;
 use super::hmd;
 use super::read::{plain, wrong};
 use super::scene::SceneChoice;
-use super::{ExperimentFile, FileError, Setting};
+use super::{ExperimentFile, FileError, Setting, display};
 use crate::Workstation;
 use crate::levels::summarise;
 use parameters::{ParameterError, Value as Number};
@@ -211,7 +211,7 @@ impl ExperimentFile {
         let machine = MachineConfig::preset(preset).map_err(|error| refused(place, error))?;
         // Start from the preset, with the parameters of every pipeline's firmware.
         let mut machine = self.registry().machine_of(machine);
-        if let Some(display) = self.display()? {
+        if let Some(display) = display::read(self)? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
             check_faces(&machine, pipeline).map_err(|error| refused(place, error))?;
@@ -250,13 +250,6 @@ impl ExperimentFile {
             _ => return "machine",
         };
         self.get(&key).map_or("machine", |setting| &setting.place)
-    }
-
-    /// Returns the configuration of the display that `display` names.
-    fn display(&self) -> Result<Option<Box<dyn pxpl5_display::DisplayConfig>>, FileError> {
-        let displays: Vec<(&str, &pxpl5_run::DisplayEntry)> =
-            self.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
-        Ok(self.choice("display", &displays)?.map(|entry| (entry.config)()))
     }
 
     /// Refuses a parameter that a key of the pipeline sets too, unless both give the same value.

@@ -57,7 +57,9 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
-        ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
+        ConfigError::Board(format!(
+            "{pipeline} draws single fields of 240 lines between two retraces, so it needs interlace: expected the display ntsc, found {found}"
+        ))
     })?;
     // A larger display is accepted.
     let RegionGrid { width, height, .. } = RegionGrid::FRAME;

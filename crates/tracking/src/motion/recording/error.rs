@@ -18,12 +18,31 @@ pub enum RecordingError {
     /// The columns of the file cannot be recognized and no mapping was given.
     #[error(
         "line {line}: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file (#timestamp [ns],p_RS_R_x [m],...), a TUM \
-         file (eight numbers apart by spaces) or a mapping of columns, found {found}"
+         file (eight numbers apart by spaces), a pose log (predicted_display_time,position_x,...,orientation_w as CSV or JSON lines) or a \
+         mapping of columns, found {found}"
     )]
     Format {
         /// Number of the first line, from 1.
         line: u64,
         /// Text of the line, as it was read.
+        found: String,
+    },
+    /// A pose log leaves out columns.
+    #[error("line {line}: expected the columns of a pose log, of which {missing} are missing; found {found}")]
+    PoseLog {
+        /// Number of the line, from 1.
+        line: u64,
+        /// The columns that are missing.
+        missing: String,
+        /// The columns that there are.
+        found: String,
+    },
+    /// A line of a file of JSON lines cannot be read.
+    #[error("line {line}: expected an object of JSON, found {found}")]
+    Json {
+        /// Number of the line, from 1.
+        line: u64,
+        /// Message of the reader.
         found: String,
     },
     /// The file lacks a mapped column.

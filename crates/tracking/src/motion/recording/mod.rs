@@ -2,6 +2,7 @@ mod axes;
 mod columns;
 mod decimal;
 mod error;
+mod pose_log;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -92,6 +93,7 @@ impl Recording {
     /// | own | `time_s,x,y,z,qw,qx,qy,qz` | seconds, as they are | real part first | [`Axes::OpenGl`] |
     /// | EuRoC | `#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...` and any more columns | nanoseconds, from the first line | real part first | [`Axes::Euroc`] |
     /// | TUM | eight numbers apart by spaces, behind comments (`#`) | seconds, from the first line | real part last | [`Axes::Optical`] |
+    /// | pose log | a header with `predicted_display_time`, `position_x`, ..., `orientation_w` in any order, or a line of JSON with these | nanoseconds unless the name ends in `_us`, `_ms` or `_s`, from the first line | by name | [`Axes::OpenGl`], which are OpenXR's |
     ///
     /// Positions are in metres, and quaternions rotate the head's axes into the world's.
     ///

@@ -3,6 +3,7 @@ use glam::{DQuat, DVec3};
 use super::axes::Axes;
 use super::columns::{Column, Columns};
 use super::decimal::scaled;
+use super::pose_log;
 use super::{FARTHEST_M, FASTEST, LATEST_S, RecordingError, Sample};
 use crate::pose::Pose;
 use crate::rotation;
@@ -73,8 +74,35 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
     let lines: Vec<Line<'_>> = lines.collect();
+    if columns.is_empty() && lines.first().is_some_and(|first| pose_log::is_json(first.text)) {
+        return of_json(&lines, axes);
+    }
     // Take the layout from the mapping, or recognize it from the first lines.
     let layout = if columns.is_empty() { recognised(&lines)? } else { mapped(&lines, columns)? };
+    collect(&lines, &layout, axes)
+}
+
+/// Reads lines of JSON, each as a line of fields.
+fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingError> {
+    let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));
+    let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, RecordingError>>()?;
+    let time = &read.first().ok_or(RecordingError::Empty)?.1.1;
+    let columns = pose_log::json_columns(time);
+    let texts: Vec<(u64, String)> = read.iter().map(|(number, (fields, _))| (*number, fields.join("\t"))).collect();
+    let lines: Vec<Line<'_>> = texts.iter().map(|(number, text)| Line { number: *number, text }).collect();
+    let layout = Layout {
+        separator: Some('\t'),
+        columns,
+        n_fields: Some(8),
+        axes: Axes::OpenGl,
+        from_first: true,
+        begins_after: 0,
+    };
+    collect(&lines, &layout, axes)
+}
+
+/// Reads the samples of lines, in this crate's axes.
+fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, RecordingError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
     let mut samples: Vec<Sample> = Vec::new();
@@ -156,7 +184,15 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
             begins_after,
         });
     }
-    // Case 3: a TUM trajectory, whose first line without `#` has eight numbers.
+    // Case 3: a pose log, whose header has names of its columns in any order.
+    let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
+    let names = Line { number: first.number, text: first.text.trim_start_matches('#').trim() }.fields(separator);
+    if pose_log::is_header(&names) {
+        let columns = pose_log::columns(first.number, &names)?;
+        let (axes, begins_after) = (Axes::OpenGl, first.number);
+        return Ok(Layout { separator, columns, n_fields: None, axes, from_first: true, begins_after });
+    }
+    // Case 4: a TUM trajectory, whose first line without `#` has eight numbers.
     let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(RecordingError::Empty)?;
     let fields = numbers.fields(None);
     if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {

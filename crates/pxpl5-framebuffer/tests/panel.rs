@@ -1,9 +1,9 @@
-//! Tests of the high-resolution frame buffer through its interface. Times are fractions of its 72 Hz period; a model
-//! that paints whole regions gives the expected pictures.
+//! Tests of panels through their interface. Times are fractions of a period; a model that paints whole regions gives the
+//! expected pictures.
 
 use image::{Rgb, RgbImage};
-use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
-use pxpl5_hires::HiResConfig;
+use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, Scan};
+use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{
     Body, CopyTarget, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid, RegionId,
@@ -171,4 +171,137 @@ fn a_board_with_two_ports_takes_regions_at_both() {
     assert_eq!((display.surfaces().len(), display.nodes().len()), (2, 4));
     let error = config.build(&nodes[..3]).expect_err("three ports").to_string();
     assert_eq!(error, "hires.ports: expected a multiple of 2 nodes, found 3");
+}
+
+/// A panel of 100 x 50 at 100 Hz, whose lines light in the first 8 of 10 ms.
+fn small() -> PanelConfig {
+    PanelConfig { width: 100, height: 50, refresh_hz: 100, active_permille: 800, ..PanelConfig::PAPERS }
+}
+
+fn built(config: PanelConfig) -> Box<dyn Display> {
+    config.build(&[NodeId(1)]).expect("it can be built")
+}
+
+/// When some pixels light in the second period, in microseconds from its begin.
+fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
+    let display = built(config);
+    let begin = display.tick(PeriodNumber(1));
+    let lit = pixels.iter().map(|(x, y)| display.lights(0, *x, *y, PeriodNumber(1)));
+    lit.map(|at| at.map(|at| at.since(begin).0.div_ceil(1_000_000))).collect()
+}
+
+/// 5,000 pixels in 8,000 us are 1.6 us each: a line of 100 takes 160 us, a column of 50 takes 80.
+#[test]
+fn a_scan_goes_the_way_that_its_direction_says_and_a_global_one_lights_at_its_end() {
+    let corners = [(0, 0), (1, 0), (0, 1), (99, 49)];
+    let expected: [(u64, u64, [u64; 4]); 5] = [
+        (0, 0, [0, 2, 160, 7_999]),
+        (0, 1, [49 * 160, 49 * 160 + 2, 48 * 160, 159]),
+        (0, 2, [0, 80, 2, 7_999]),
+        (0, 3, [99 * 80, 98 * 80, 99 * 80 + 2, 79]),
+        (1, 0, [8_000; 4]),
+    ];
+    for (scan, direction, expected) in expected {
+        let found = lit_us(PanelConfig { scan, direction, ..small() }, &corners);
+        assert_eq!(found, expected.map(Some), "scan {scan}, direction {direction}");
+        let display = built(PanelConfig { scan, direction, ..small() });
+        let all = || (0..50).flat_map(|y| (0..100).map(move |x| (x, y)));
+        let lit: Vec<Time> = all().filter_map(|(x, y)| display.lights(0, x, y, PeriodNumber(3))).collect();
+        assert_eq!(display.first_light(0, PeriodNumber(3)), lit.iter().copied().min());
+        assert_eq!(display.last_light(0, PeriodNumber(3)), lit.iter().copied().max());
+    }
+}
+
+/// Of 25 lines in 8,000 us each takes 320.
+#[test]
+fn an_interlaced_panel_lights_every_second_line_and_keeps_the_others() {
+    let config = PanelConfig { interlace: 1, ..small() };
+    assert_eq!(lit_us(config, &[(0, 0), (0, 1), (0, 2), (0, 3)]), [None, Some(0), None, Some(320)]);
+    let mut display = built(config);
+    assert_eq!(display.rows_lit(PeriodNumber(1)), (1, 2));
+    assert_eq!(display.rows_lit(PeriodNumber(2)), (0, 2));
+    let mut bench = TestBench::new();
+    let grid = RegionGrid { width: 100, height: 50, region_width: 128, region_height: 128 };
+    let parts = (100 * 50_u32).div_ceil(MAX_MESSAGE_WORDS);
+    let target = CopyTarget {
+        frame_buffer: NodeId(1),
+        buffer: 1,
+        lines: Lines::Frame,
+        grid,
+        region: RegionId(0),
+        picture: PictureNumber(1),
+    };
+    for part in 0..parts {
+        let image = Arc::new(Counted(RegionId(9))) as _;
+        let body = Body::Pixels(RegionPixels { target, image, part, parts });
+        bench.feed(Time(1), Phase::Arrive, DisplayEvent::Delivered { port: 0, body });
+    }
+    bench.feed(Time(2), Phase::Arrive, DisplayEvent::Delivered { port: 0, body: Body::Words(swap_request(1)) });
+    // The new picture is shown in the third period, whose lines are the even ones; the odd ones still stand as black.
+    for period in [0, 1, 2, 3].map(PeriodNumber) {
+        let at = if period.0 == 1 { Time(2) } else { display.tick(period) };
+        bench.feed(at.max(display.tick(period)), Phase::Arrive, DisplayEvent::Tick(period));
+    }
+    bench.run(|event, context| display.handle(event, context));
+    let seen = display.seen(0, PeriodNumber(2)).expect("it is over");
+    let is_new = |y: u32| *seen.get_pixel(0, y) == *display.shown(0).expect("a surface").get_pixel(0, y);
+    assert!(is_new(0) && is_new(2), "the even lines are new");
+    assert_eq!(display.last_seen(), Some(PeriodNumber(2)));
+}
+
+#[test]
+fn colours_keep_their_highest_bits() {
+    let mut display = built(PanelConfig { width: 128, height: 128, bits: 6, ..small() });
+    let grid = RegionGrid { width: 128, height: 128, region_width: 128, region_height: 128 };
+    let mut bench = TestBench::new();
+    for part in 0..16 {
+        let target = CopyTarget {
+            frame_buffer: NodeId(1),
+            buffer: 0,
+            lines: Lines::Frame,
+            grid,
+            region: RegionId(0),
+            picture: PictureNumber(1),
+        };
+        let body = Body::Pixels(RegionPixels { target, image: Arc::new(Counted(RegionId(200))), part, parts: 16 });
+        bench.feed(Time(1), Phase::Arrive, DisplayEvent::Delivered { port: 0, body });
+    }
+    bench.run(|event, context| display.handle(event, context));
+    let shown = display.shown(0).expect("a surface");
+    // Two bits of each primary: 200 is 11001000, 127 is 01111111.
+    assert_eq!(*shown.get_pixel(5, 127), Rgb([0, 0b1100_0000, 0b0100_0000]));
+}
+
+#[test]
+fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
+    let wide = PanelConfig { width: 1440, height: 1600, ..PanelConfig::PAPERS };
+    let long = PanelConfig { refresh_hz: 90, persistence_us: 20_000, ..PanelConfig::PAPERS };
+    let odd = PanelConfig { interlace: 1, height: 481, ..PanelConfig::PAPERS };
+    let global = PanelConfig { interlace: 1, scan: 1, ..PanelConfig::PAPERS };
+    let bits = PanelConfig { bits: 16, ..PanelConfig::PAPERS };
+    let still = PanelConfig { refresh_hz: 0, ..PanelConfig::PAPERS };
+    for (config, expected) in [
+        (
+            wide,
+            "panel.width: expected at most 128 regions of 128 x 128, as many as firmware can number, found 156 (1440 x 1600 pixels)",
+        ),
+        (long, "panel.persistence_us: expected 0 to 11111, a period of 90 Hz, found 20000"),
+        (odd, "panel.height: expected an even number of interlaced lines, found 481"),
+        (global, "panel.interlace: expected 0: an interlaced scan is rolling, and goes down or up, found 1"),
+        (bits, "panel.bits: expected a multiple of 3, as many for each primary, found 16"),
+    ] {
+        assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
+    }
+    let error = DisplayConfig::check(&still).expect_err("refused").to_string();
+    assert!(error.starts_with("panel.refresh_hz") && error.contains('0') && error.contains("1000"), "{error}");
+}
+
+/// The centre of 2 ms of light that follows with 0.1 ms is 1.1 ms after its begin.
+#[test]
+fn presets_are_lit_as_their_sources_say() {
+    let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
+    assert_eq!((light.scan, light.centre()), (Scan::Down, Span::from_us(1_100)));
+    let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
+    assert_eq!((light.scan, light.persistence, light.centre()), (Scan::Global, Span::from_us(330), Span::from_us(165)));
+    assert!(Rig::new().display.light().is_instant());
 }

@@ -1,0 +1,78 @@
+//! The raster before a tracked head's eyes: plain, the raster offset of VDRT, or a device that moves pictures.
+
+use super::read::wrong;
+use super::{ExperimentFile, FileError};
+use pxpl5_run::{Every, Pipeline, Raster, Reprojection, Warp};
+use toml::Value;
+
+/// Keys of a device that moves pictures.
+pub(super) const EVERY: &str = "head.reprojection.every";
+pub(super) const LATENCY: &str = "head.reprojection.latency_us";
+
+/// Values of `head.raster`.
+const RASTER: &str = "head.raster";
+
+/// How a raster is named: those without numbers of their own, and the ways in which a device moves pictures.
+#[derive(Clone, Copy)]
+enum Named {
+    Raster(Raster),
+    Device(Warp),
+}
+
+/// Reads the raster; a pipeline without one pose a picture has no raster offset.
+pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, FileError> {
+    let plain = Raster::ALL.map(|(name, raster)| (name, Named::Raster(raster)));
+    let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
+    let names: Vec<(&str, Named)> = plain.into_iter().chain(devices).collect();
+    let named = file.choice(RASTER, &names)?.unwrap_or(Named::Raster(Raster::Plain));
+    let refused = |applies_to: &str| {
+        let place = file.get(RASTER).map(|setting| setting.place.clone()).unwrap_or_default();
+        let key =
+            format!("{RASTER} = {}", file.get(RASTER).map(|it| super::read::plain(&it.value)).unwrap_or_default());
+        let applies_to = applies_to.to_owned();
+        Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to })
+    };
+    match named {
+        Named::Raster(Raster::Vdrt) if !pipeline.has_one_pose() => {
+            refused("rendering-control, slats and jitp-field, whose pictures are of one pose")
+        }
+        Named::Device(Warp::Depth) if pipeline.draws_faces().is_some() => refused(
+            "pipelines whose pictures are of one eye; faces around the head are several pictures, of which the turn is left: rotation",
+        ),
+        Named::Raster(raster) => {
+            refuse_numbers(file)?;
+            Ok(raster)
+        }
+        Named::Device(by) => {
+            let every = file.choice(EVERY, &Every::ALL)?.unwrap_or(Every::Field);
+            let (least, most) = Reprojection::LATENCY_US;
+            let latency_us = file.integer(LATENCY, least..=most)?.unwrap_or(every.usual_latency_us());
+            Ok(Raster::Reprojected(Reprojection { by, every, latency_us }))
+        }
+    }
+}
+
+/// Numbers of a device have no meaning without one.
+fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
+    for key in [EVERY, LATENCY] {
+        if let Some(setting) = file.get(key) {
+            return Err(wrong(key, setting, "nothing: head.raster is no shift, rotation or depth"));
+        }
+    }
+    Ok(())
+}
+
+/// The settings that stand for a raster.
+pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
+    let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
+        return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];
+    };
+    let name = |(name, _): &(&'static str, _)| *name;
+    let by = Warp::ALL.iter().find(|(_, known)| *known == by).map_or("", name);
+    let every = Every::ALL.iter().find(|(_, known)| *known == every).map_or("", |(name, _)| name);
+    vec![
+        (RASTER.to_owned(), Value::from(by)),
+        (EVERY.to_owned(), Value::from(every)),
+        (LATENCY.to_owned(), Value::from(latency_us as i64)),
+    ]
+}

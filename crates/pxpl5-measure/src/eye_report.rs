@@ -1,0 +1,99 @@
+//! Results of the display before an eye: the smear of lit pixels, and the empty places of a device that moves pictures.
+
+use crate::distribution::Distribution;
+use crate::percentiles::Percentiles;
+use pxpl5_run::Reprojection;
+use pxpl5_sim::Time;
+use serde::Serialize;
+
+/// Results beside the pixel errors if pixels shine for some time, or if a device moves pictures on their way to the eye.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EyeReport {
+    /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels light
+    /// for an instant.
+    pub smear_px: Option<Percentiles>,
+    /// Results of the device that moves pictures. `None` without one.
+    pub reprojection: Option<ReprojectionReport>,
+}
+
+/// Results of a device that moves pictures to the newest pose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReprojectionReport {
+    /// Setting of the device.
+    pub device: Reprojection,
+    /// Pixels that the device computes per second, of one eye.
+    pub pixels_per_s: f64,
+    /// Poses that the device takes per second.
+    pub poses_per_s: f64,
+    /// Time from the measurement of the newest pose to light, in milliseconds.
+    pub pose_age_ms: Percentiles,
+    /// Number of pixels that were checked for content in the picture.
+    pub looked_at: u64,
+    /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
+    pub empty_share: Option<f64>,
+    /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless pictures are moved with depth.
+    pub disoccluded_share: Option<f64>,
+}
+
+/// The numbers of a device, from its setting and the display.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Device {
+    pub(crate) setting: Reprojection,
+    pub(crate) pixels_per_s: f64,
+    pub(crate) poses_per_s: f64,
+    pub(crate) has_depth: bool,
+}
+
+/// Sums for an [`EyeReport`].
+#[derive(Debug)]
+pub(crate) struct EyeSum {
+    smear: Option<Distribution>,
+    device: Option<Device>,
+    age_ms: Distribution,
+    looked_at: u64,
+    beyond: u64,
+    hidden: u64,
+}
+
+impl EyeSum {
+    /// Returns empty sums that keep up to `limit` numbers of a kind. `smears` is true if pixels are lit for more than an instant.
+    pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
+        let smear = smears.then(|| Distribution::keeping(limit));
+        Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
+    }
+
+    /// Adds the distance that a pixel's content moves while the pixel is lit.
+    pub(crate) fn smeared(&mut self, px: f64) {
+        self.smear.iter_mut().for_each(|smear| smear.push(px));
+    }
+
+    /// Adds the time from the measurement of a pose to the light of a pixel.
+    pub(crate) fn pose(&mut self, measured_at: Option<Time>, light: Time) {
+        if let Some(measured_at) = measured_at {
+            self.age_ms.push((light.0 as f64 - measured_at.0 as f64) * 1e-9);
+        }
+    }
+
+    /// Adds a pixel that was checked for content in the picture.
+    pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
+        self.looked_at += 1;
+        self.beyond += u64::from(is_beyond);
+        self.hidden += u64::from(is_hidden);
+    }
+
+    /// Returns the results. `None` if pixels light for an instant in their own places.
+    pub(crate) fn said(self) -> Option<EyeReport> {
+        let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
+        let reprojection = self.device.map(|device| ReprojectionReport {
+            device: device.setting,
+            pixels_per_s: device.pixels_per_s,
+            poses_per_s: device.poses_per_s,
+            pose_age_ms: self.age_ms.percentiles(),
+            looked_at: self.looked_at,
+            empty_share: share(self.beyond),
+            disoccluded_share: share(self.hidden).filter(|_| device.has_depth),
+        });
+        let smear_px = self.smear.map(|smear| smear.percentiles());
+        (smear_px.is_some() || reprojection.is_some()).then_some(EyeReport { smear_px, reprojection })
+    }
+}

@@ -1,0 +1,93 @@
+//! Content of the screen's pixels behind a device that moves pictures.
+
+use crate::content::Content;
+use crate::drawn::Drawn;
+use crate::registration::{Evaluator, Warped, middle};
+use crate::reproject::Move;
+use crate::shown::{Seen, Shown};
+use glam::DVec2;
+use pxpl5_run::{FinalResults, Warp};
+use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
+use tracking::Pose;
+use tracking::view::HmdView;
+
+/// Content of a pixel of the screen.
+#[derive(Clone, Debug)]
+pub(crate) enum Moved {
+    /// Content of a picture, with the pose that the picture was drawn for.
+    Shows(Content, Drawn),
+    /// No content, because the place of the picture shows nothing or no complete picture.
+    NotComplete(Seen),
+    /// No content, because the place lies beyond the edge of the picture.
+    Beyond,
+    /// No content, because something hides it in the picture.
+    Hidden,
+}
+
+/// Most steps until a place agrees with the pose that it was drawn for. Parts of a picture may have poses of their own.
+const STEPS: usize = 4;
+
+/// Returns the content of a pixel that begins to light at `at`, with its picture moved to a pose.
+pub(crate) fn moved(
+    (judge, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
+    (by, now): (Warp, &Pose),
+    place: [u32; 2],
+    field: PeriodNumber,
+    at: Time,
+) -> Moved {
+    let target = middle(place[0], place[1]);
+    let mut pixel = place;
+    let mut last = Moved::Beyond;
+    for _ in 0..STEPS {
+        let drawn = match shown.seen(run, pixel, field, at) {
+            Seen::Complete(drawn) => drawn,
+            other => return Moved::NotComplete(other),
+        };
+        let Some((content, source)) = source(judge, by, now, &drawn, target, &mut last) else { return last };
+        last = Moved::Shows(content, drawn);
+        let next = pixel_at(&judge.view, source, run.record.display().rows_lit(field));
+        if next == pixel {
+            break;
+        }
+        pixel = next;
+    }
+    last
+}
+
+/// Returns the content that moves to a place, and its place in the picture. If there is none, `reason` says why.
+fn source(
+    judge: &Evaluator,
+    by: Warp,
+    now: &Pose,
+    drawn: &Drawn,
+    target: DVec2,
+    reason: &mut Moved,
+) -> Option<(Content, DVec2)> {
+    let moment = judge.moment(drawn);
+    // Faces are several pictures, each with a depth of its own: of them the turn alone is left to a device.
+    if by == Warp::Depth && !matches!(drawn, Drawn::Faces(_)) {
+        return match judge.warped(&moment, now, target) {
+            Warped::Seen(content, source) => Some((content, source)),
+            Warped::Beyond => {
+                *reason = Moved::Beyond;
+                None
+            }
+            Warped::Hidden => {
+                *reason = Moved::Hidden;
+                None
+            }
+        };
+    }
+    *reason = Moved::Beyond;
+    let source = Move::between(by, &judge.view, &moment.pose, now).source(&judge.view, target);
+    let source = source.filter(|source| judge.view.contains(*source))?;
+    Some((judge.content(drawn, source), source))
+}
+
+/// Returns the pixel of a place, in a row that its field lights.
+fn pixel_at(view: &HmdView, place: DVec2, (first_row, distance): (u32, u32)) -> [u32; 2] {
+    let last = view.centre_px() * 2.0 - DVec2::ONE;
+    let inside = place.floor().clamp(DVec2::ZERO, last);
+    [inside.x as u32, inside.y as u32 / distance * distance + first_row]
+}

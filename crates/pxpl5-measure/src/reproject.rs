@@ -1,0 +1,178 @@
+//! Moving pictures to another pose: where each pixel comes from, and the pixels themselves.
+
+use glam::{DQuat, DVec2, DVec3};
+use image::{Rgb, RgbImage};
+use pxpl5_run::Warp;
+use std::ops::Range;
+use tracking::Pose;
+use tracking::view::{HmdView, RasterOffset};
+
+/// The direction in head axes that a place of the picture shows, 1 m deep.
+pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
+    let from_centre = (place - view.centre_px()) / view.focal_px();
+    DVec3::new(from_centre.x, -from_centre.y, -1.0)
+}
+
+/// How places of the screen come from those of a picture that was drawn for another pose, without its depth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Move {
+    /// Shifted as a whole, pixels.
+    Shift(DVec2),
+    /// Turned: from the axes of the head now to those of the head that the picture was drawn for.
+    Turn(DQuat),
+}
+
+impl Move {
+    /// The move from a pose that a picture was drawn for to the newest one. Depth is left to who has it: without it a turn remains.
+    pub(crate) fn between(by: Warp, view: &HmdView, drawn_for: &Pose, now: &Pose) -> Self {
+        match by {
+            Warp::Shift => Self::Shift(RasterOffset::between(drawn_for, now, 0).shift_px(view, 0)),
+            Warp::Rotation | Warp::Depth => Self::Turn(drawn_for.orientation.conjugate() * now.orientation),
+        }
+    }
+
+    /// The place of the picture that is seen at a place of the screen; `None` where that is behind the picture's eye.
+    pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
+        match self {
+            Self::Shift(shift) => Some(place - *shift),
+            Self::Turn(turn) => view.project(*turn * direction(view, place)),
+        }
+    }
+}
+
+/// Rows of a picture that belong to one field: the first, and the distance to the next.
+pub(crate) type Rows = (u32, u32);
+
+/// Writes some pixels of a row, each from a place of the source; black where the source has none. Returns how many those were.
+pub(crate) fn fill_row(
+    source: &RgbImage,
+    (first_row, distance): Rows,
+    (y, xs): (u32, Range<u32>),
+    place: impl Fn(u32) -> Option<DVec2>,
+    out: &mut RgbImage,
+) -> u64 {
+    let [width, height] = [f64::from(source.width()), f64::from(source.height())];
+    let pixels = source.as_raw();
+    let begin = (y as usize * source.width() as usize + xs.start as usize) * 3;
+    let out: &mut [u8] = out;
+    let targets = out[begin..].chunks_exact_mut(3).zip(xs);
+    let mut empty = 0;
+    for (target, x) in targets {
+        let from = place(x).filter(|from| (0.0..width).contains(&from.x) && (0.0..height).contains(&from.y));
+        let Some(from) = from else {
+            target.fill(0);
+            empty += 1;
+            continue;
+        };
+        // Of an interlaced picture only the rows of its field are there: the nearest of them.
+        let row =
+            if distance == 1 { from.y as u32 } else { nearest_row(from.y, (first_row, distance), source.height()) };
+        let at = (row as usize * source.width() as usize + from.x as usize) * 3;
+        target.copy_from_slice(&pixels[at..at + 3]);
+    }
+    empty
+}
+
+/// The row of a field that is nearest to a place.
+fn nearest_row(y: f64, (first_row, distance): Rows, height: u32) -> u32 {
+    let number = (y - 0.5 - f64::from(first_row)) / f64::from(distance);
+    let last = (height - 1 - first_row) / distance;
+    ((number.round().max(0.0) as u32).min(last)) * distance + first_row
+}
+
+/// Writes some pixels of a row of a picture that is moved. Returns how many are empty.
+pub(crate) fn move_row(
+    source: &RgbImage,
+    rows: Rows,
+    (y, xs): (u32, Range<u32>),
+    (view, moved): (&HmdView, &Move),
+    out: &mut RgbImage,
+) -> u64 {
+    let begin = DVec2::new(0.5, f64::from(y) + 0.5);
+    match moved {
+        Move::Shift(shift) => {
+            let from = begin - *shift;
+            fill_row(source, rows, (y, xs), |x| Some(DVec2::new(from.x + f64::from(x), from.y)), out)
+        }
+        Move::Turn(turn) => {
+            // Along a row the direction goes straight on, so that a pixel costs one division.
+            let ray = *turn * direction(view, begin);
+            let step = *turn * (DVec3::X / view.focal_px());
+            let (centre, focal) = (view.centre_px(), view.focal_px());
+            let place = |x: u32| {
+                let at = ray + step * f64::from(x);
+                let scale = focal / -at.z;
+                (at.z < 0.0).then(|| DVec2::new(centre.x + at.x * scale, centre.y - at.y * scale))
+            };
+            fill_row(source, rows, (y, xs), place, out)
+        }
+    }
+}
+
+/// Moves a whole picture from the pose that it was drawn for to another one, by a shift or a turn. Returns it, each pixel the nearest of the
+/// picture's, and how many of its pixels are empty: those are black. Without depth [`Warp::Depth`] is a turn.
+///
+/// # Panics
+///
+/// If the picture has another size than the view.
+#[must_use]
+pub fn reproject(picture: &RgbImage, view: &HmdView, by: Warp, drawn_for: &Pose, now: &Pose) -> (RgbImage, u64) {
+    let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
+    assert_eq!(size / 2.0, view.centre_px(), "a picture of the size of the view");
+    let moved = Move::between(by, view, drawn_for, now);
+    let mut out = RgbImage::from_pixel(picture.width(), picture.height(), Rgb([0; 3]));
+    let rows = 0..picture.height();
+    let empty = rows.map(|y| move_row(picture, (0, 1), (y, 0..picture.width()), (view, &moved), &mut out)).sum();
+    (out, empty)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracking::rotation;
+
+    /// A picture of which every pixel tells its place.
+    fn places(width: u32, height: u32) -> RgbImage {
+        RgbImage::from_fn(width, height, |x, y| Rgb([(x >> 8) as u8 + 1, x as u8, y as u8]))
+    }
+
+    #[test]
+    fn without_a_move_every_pixel_stays_and_none_is_empty() {
+        let picture = places(640, 480);
+        for by in [Warp::Shift, Warp::Rotation] {
+            let pose = Pose::facing(rotation::from_yaw_pitch_roll(0.4, -0.2, 0.1));
+            assert_eq!(reproject(&picture, &HmdView::ntsc(), by, &pose, &pose), (picture.clone(), 0));
+        }
+    }
+
+    /// A turn to the left by a brings to column x, from the middle, what was at f tan(atan(x / f) - a).
+    #[test]
+    fn under_a_turn_columns_come_from_where_the_tangents_say() {
+        let view = HmdView::ntsc();
+        let (f, angle) = (view.focal_px(), 0.05_f64);
+        let now = Pose::facing(rotation::about_y(angle));
+        let (moved, empty) = reproject(&places(640, 480), &view, Warp::Rotation, &Pose::IDENTITY, &now);
+        let from = |x: u32| f * (((f64::from(x) + 0.5 - 320.0) / f).atan() - angle).tan() + 320.0;
+        let mut counted = 0;
+        for x in 0..640 {
+            let from = from(x);
+            let pixel = moved.get_pixel(x, 239).0;
+            if (0.0..640.0).contains(&from) {
+                assert_eq!(u32::from(pixel[0] - 1) * 256 + u32::from(pixel[1]), from as u32, "{x}");
+            } else {
+                assert_eq!(pixel, [0; 3], "{x}");
+                counted += 1;
+            }
+        }
+        // The middle row has as many empty columns as the tangents leave out; rows beside it at least as many.
+        assert!(counted > 20 && empty >= counted * 480, "{counted} {empty}");
+    }
+
+    #[test]
+    fn rows_of_a_field_come_from_the_same_field() {
+        for (y, rows, expected) in [(10.5, (0, 2), 10), (11.4, (0, 2), 10), (11.6, (0, 2), 12), (10.5, (1, 2), 11)] {
+            assert_eq!(nearest_row(y, rows, 480), expected, "{y} {rows:?}");
+        }
+        assert_eq!([nearest_row(-3.0, (1, 2), 480), nearest_row(480.0, (0, 2), 480)], [1, 478]);
+    }
+}

@@ -1,0 +1,99 @@
+//! Poses to which a device moves pictures. Each part of a scan takes the newest pose.
+
+use pxpl5_display::{Display, Scan};
+use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::PeriodNumber;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::Arc;
+use tracking::Pose;
+
+/// The newest pose of a part of a scan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NewestPose {
+    /// The pose, predicted for the middle of the part's light.
+    pub(crate) pose: Pose,
+    /// Time at which its report was measured. `None` before the first report.
+    pub(crate) measured_at: Option<Time>,
+}
+
+/// Takes the newest pose for each part of a scan: a field, a strip or a line.
+pub(crate) struct Reprojector {
+    pub(crate) setting: Reprojection,
+    estimator: Estimator,
+    head: Arc<HeadViews>,
+    /// Poses of the latest field, by the number of the part.
+    poses: BTreeMap<u32, NewestPose>,
+}
+
+impl fmt::Debug for Reprojector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Reprojector").field("setting", &self.setting).finish_non_exhaustive()
+    }
+}
+
+impl Reprojector {
+    pub(crate) fn new(head: &Arc<HeadViews>, setting: Reprojection, without: Option<Cause>) -> Self {
+        let estimator = Estimator::new(head, without);
+        Self { setting, estimator, head: Arc::clone(head), poses: BTreeMap::new() }
+    }
+
+    /// Takes the poses of the parts of a field in which `places` lie. Fields must come in rising order.
+    pub(crate) fn begin(&mut self, display: &dyn Display, field: PeriodNumber, places: impl Iterator<Item = [u32; 2]>) {
+        let parts: BTreeSet<u32> = places.map(|place| part(display, self.setting.every, place)).collect();
+        let light = |part: u32| Some((part, lit(display, self.setting.every, part, field)?));
+        let mut lit: Vec<_> = parts.into_iter().filter_map(light).collect();
+        // A predictor follows reports in the order of their arrival.
+        lit.sort_by_key(|(_, (first, _))| *first);
+        let latency = Span::from_us(self.setting.latency_us);
+        let centre = display.light().centre();
+        self.poses.clear();
+        for (part, (first, last)) in lit {
+            let known = Time(first.0.saturating_sub(latency.0));
+            let aim = Time(first.0.midpoint(last.0)) + centre;
+            let report = self.head.report_by(known);
+            let measured_at = report.and_then(|arrived| self.head.measured_at(arrived));
+            self.poses.insert(part, NewestPose { pose: self.estimator.pose(known, aim), measured_at });
+        }
+    }
+
+    /// Returns the newest pose of the part in which a place lies. `None` unless `begin` had a place of that part.
+    pub(crate) fn newest(&self, display: &dyn Display, place: [u32; 2]) -> Option<&NewestPose> {
+        self.poses.get(&part(display, self.setting.every, place))
+    }
+}
+
+/// Returns the number of the part of a scan in which a place lies.
+fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
+    let along = match display.light().scan {
+        Scan::Down | Scan::Up => y,
+        Scan::Right | Scan::Left => x,
+        Scan::Global => return 0,
+    };
+    match every {
+        Every::Field => 0,
+        Every::Strip => along / Every::STRIP,
+        Every::Line => along,
+    }
+}
+
+/// Returns the times at which the first and the last pixel of a part light. `None` if no pixel does.
+fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> Option<(Time, Time)> {
+    let surface = display.surfaces().first()?;
+    let size = [surface.width, surface.height];
+    let scan = display.light().scan;
+    let [from, to] = match every {
+        Every::Strip if scan != Scan::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
+        Every::Line if scan != Scan::Global => [part; 2],
+        _ => [0, u32::MAX],
+    };
+    let sideways = matches!(scan, Scan::Right | Scan::Left);
+    let whole = [0, u32::MAX];
+    let [xs, ys] = if sideways { [[from, to], whole] } else { [whole, [from, to]] };
+    let (first_row, distance) = display.rows_lit(field);
+    let corners = xs.into_iter().flat_map(|x| ys.into_iter().map(move |y| [x.min(size[0] - 1), y.min(size[1] - 1)]));
+    let lights = corners.filter_map(|[x, y]| display.lights(0, x, y / distance * distance + first_row, field));
+    let all: Vec<Time> = lights.collect();
+    Some((*all.iter().min()?, *all.iter().max()?))
+}

@@ -1,0 +1,348 @@
+//! Tests of pictures that a device moves to the newest pose, against closed forms of a head that turns or slides steadily.
+//!
+//! The tracker is ideal and the predictor exact for such motions, so that the instants of poses alone make errors.
+
+use glam::{DQuat, DVec3};
+use image::RgbImage;
+use pxpl5_display::DisplayConfig;
+use pxpl5_framebuffer::PanelConfig;
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{EyeReport, Measured, PixelErrors, Showing, reproject};
+use pxpl5_run::{
+    Every, Experiment, Head, Outcome, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Reprojection,
+    WARM_UP_PERIODS, Warp,
+};
+use pxpl5_scene::builtin;
+use pxpl5_sim::Time;
+use pxpl5_wire::SurfaceId;
+use std::sync::Arc;
+use tracking::motion::{Motion, Slide};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+use tracking::view::HmdView;
+use tracking::{Pose, SettingSink};
+
+const FIELDS: u64 = 30;
+
+/// Time of an NTSC line: 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, and the first 22 are
+/// blanked. An odd field begins with half a line.
+const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
+
+fn beam(field: u64, row: u64, x: f64) -> f64 {
+    let half = (field % 2) as f64 / 2.0;
+    (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x) / 780.0) * LINE_S
+}
+
+/// Focal length of so many pixels over 60 degrees.
+fn focal_px(width: f64) -> f64 {
+    width / 2.0 / 30f64.to_radians().tan()
+}
+
+/// A head that turns to the left at a steady rate, rad/s.
+#[derive(Clone, Copy, Debug)]
+struct Turning(f64);
+
+impl Motion for Turning {
+    fn pose(&self, t_ps: u64) -> Pose {
+        Pose::facing(DQuat::from_axis_angle(DVec3::Y, self.0 * (t_ps as f64 * 1e-12 - 0.35)))
+    }
+    fn identify(&self, settings: &mut SettingSink) {
+        settings("motion", &"turning");
+    }
+    fn velocity(&self, _: u64) -> DVec3 {
+        DVec3::ZERO
+    }
+    fn angular_velocity(&self, _: u64) -> DVec3 {
+        DVec3::Y * self.0
+    }
+}
+
+fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
+    let head = Head::new(Arc::new(motion), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+    head.expect("in range")
+}
+
+/// Pictures of one pose a field, drawn for its middle.
+fn fields(head: Head, scene: &str) -> Outcome {
+    let pipeline = (Registry::of_papers().pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
+    let scene = Arc::new(builtin(scene).expect("built in"));
+    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
+    experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("it is small")
+}
+
+const fn device(by: Warp, every: Every) -> Showing {
+    Showing::Reprojected(Reprojection::new(by, every))
+}
+
+/// When a picture of a field is drawn for.
+fn aim(field: u64) -> f64 {
+    (beam(field, 0, 0.0) + beam(field, 239, 639.0)) / 2.0
+}
+
+/// When the pose of a part of a field is predicted for: the middle of the light of its first and last pixel.
+fn middle_of(every: Every, field: u64, row: u64) -> f64 {
+    // Lines of a frame, of which a field lights every second.
+    let line = 2 * row + field % 2;
+    let [from, to] = match every {
+        Every::Field => [0, 239],
+        Every::Strip => [line / 128 * 64, (line / 128 * 64 + 63).min(239)],
+        Every::Line => [row, row],
+    };
+    (beam(field, from, 0.0) + beam(field, to, 639.0)) / 2.0
+}
+
+/// The pixels of a field at which errors are evaluated.
+fn grid() -> impl Iterator<Item = (u64, u64, u64)> {
+    let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
+    let of_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
+    (WARM_UP_PERIODS..FIELDS).flat_map(of_field)
+}
+
+/// Returns the place of content after a turn to the left, in pixels from the middle.
+fn after(right: f64, up: f64, angle: f64, f: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    let depth = f * cos - right * sin;
+    [(right * cos + f * sin) * f / depth, up * f / depth]
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Returns the mean distance that content moves from the instant of its pose to its light.
+fn turned_px(rate: f64, every: Every) -> f64 {
+    let f = focal_px(640.0);
+    mean(grid().map(|(field, row, x)| {
+        let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
+        let angle = rate * (beam(field, row, x as f64) - middle_of(every, field, row));
+        let [seen_right, seen_up] = after(right, up, angle, f);
+        (seen_right - right).hypot(seen_up - up)
+    }))
+}
+
+#[test]
+fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_light() {
+    let outcome = fields(head(Turning(2.0)), "full-screen:2");
+    for by in [Warp::Rotation, Warp::Depth] {
+        for every in [Every::Field, Every::Strip, Every::Line] {
+            let errors = PixelErrors::shown(&outcome, device(by, every));
+            let expected = turned_px(2.0, every);
+            assert_eq!(errors.judged, 25 * (FIELDS - WARM_UP_PERIODS), "{by:?} {every:?}");
+            let found = errors.pixels.mean;
+            assert!((found / expected - 1.0).abs() < 2e-3, "{by:?} {every:?}: {found} for {expected}");
+        }
+    }
+    // A line takes 52 us: less than a twentieth of a pixel at 115 degrees a second.
+    assert!(turned_px(2.0, Every::Line) < 0.05 && turned_px(2.0, Every::Field) > 4.0);
+}
+
+#[test]
+fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
+    let outcome = fields(head(Turning(2.0)), "full-screen:2");
+    let shift = PixelErrors::shown(&outcome, device(Warp::Shift, Every::Line));
+    let turn = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line));
+    assert!((shift.centre_px.mean - turn.centre_px.mean).abs() < 1e-3);
+    assert!(shift.pixels.mean > 5.0 * turn.pixels.mean, "{} {}", shift.pixels.mean, turn.pixels.mean);
+}
+
+/// The share of 16 x 12 places of each field that come from beyond the edge: f tan(atan(x / f) - a) of x from the middle.
+#[test]
+fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
+    const RATE: f64 = 8.0;
+    let outcome = fields(head(Turning(RATE)), "full-screen:2");
+    let found = EyeReport::shown(&outcome, device(Warp::Rotation, Every::Line)).expect("a device");
+    let found = found.reprojection.expect("a device");
+    let f = focal_px(640.0);
+    let [mut beyond, mut all] = [0_u64; 2];
+    for field in WARM_UP_PERIODS..FIELDS {
+        for (row, x) in (0..12).flat_map(|j| (0..16).map(move |i| ((2 * j + 1) * 480 / 24 / 2, (2 * i + 1) * 640 / 32)))
+        {
+            let angle = RATE * (middle_of(Every::Line, field, row) - aim(field));
+            let [right, up] = [x as f64 + 0.5 - 320.0, 240.0 - ((2 * row + field % 2) as f64 + 0.5)];
+            let [from_right, from_up] = after(right, up, -angle, f);
+            all += 1;
+            beyond += u64::from(from_right.abs() > 320.0 || from_up.abs() > 240.0);
+        }
+    }
+    assert_eq!(found.looked_at, all);
+    assert_eq!(found.empty_share, Some(beyond as f64 / all as f64));
+    assert!(beyond > 0 && beyond < all / 10);
+    // Nothing is known of what is hidden without depth.
+    assert_eq!(found.disoccluded_share, None);
+    let pixels_per_s = 640.0 * 240.0 * 60_000.0 / 1_001.0;
+    assert!((found.pixels_per_s / pixels_per_s - 1.0).abs() < 1e-6, "{}", found.pixels_per_s);
+    assert!((found.poses_per_s / (240.0 * 60_000.0 / 1_001.0) - 1.0).abs() < 1e-6, "{}", found.poses_per_s);
+}
+
+/// The content lies on a plane at a distance z before the head that slides along it: what moves in a time t is f v t / z.
+#[test]
+fn without_depth_a_slide_leaves_f_v_t_by_z_and_with_it_what_a_line_takes() {
+    const M_PER_S: f64 = 0.5;
+    const DISTANCE_M: f64 = 2.0;
+    let slide = head(Slide::right_at(M_PER_S)).evaluated_at(DISTANCE_M).expect("in range");
+    let outcome = fields(slide, "full-screen:2");
+    let left = |pose_at: fn(u64, u64) -> f64| {
+        let px_per_s = focal_px(640.0) * M_PER_S / DISTANCE_M;
+        mean(grid().map(|(field, row, x)| px_per_s * (beam(field, row, x as f64) - pose_at(field, row)).abs()))
+    };
+    let rotation = PixelErrors::shown(&outcome, device(Warp::Rotation, Every::Line)).pixels.mean;
+    let depth = PixelErrors::shown(&outcome, device(Warp::Depth, Every::Line)).pixels.mean;
+    let without = left(|field, _| aim(field));
+    let with = left(|field, row| middle_of(Every::Line, field, row));
+    assert!((rotation / without - 1.0).abs() < 1e-3, "{rotation} for {without}");
+    assert!((depth / with - 1.0).abs() < 2e-3, "{depth} for {with}");
+    assert!(without > 100.0 * with);
+}
+
+/// A picture a period on one region, so that every picture is drawn for the light of its own period.
+fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
+    let config = PanelConfig { width: 128, height: 96, refresh_hz: 30, ..config };
+    let machine = MachineConfig { displays: vec![Box::new(config)], ..MachineConfig::small_hmd() };
+    let scene = builtin("full-screen:2").expect("built in");
+    let experiment = Experiment::new(machine, RenderingControl::mono(), scene).head(head(Turning(rate)));
+    experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("it is small")
+}
+
+/// Returns the error in the middle of a picture whose light comes so long after the instant that it is drawn for.
+fn off_px(seconds: f64, rate: f64) -> f64 {
+    // The middle of the middle pixel.
+    let [seen_right, seen_up] = after(0.5, -0.5, rate * seconds, focal_px(128.0));
+    (seen_right - 0.5).hypot(seen_up + 0.5)
+}
+
+#[test]
+fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_scan() {
+    const RATE: f64 = 1.0;
+    let [rolling, global] = [0, 1].map(|scan| {
+        let outcome = on_panel(PanelConfig { scan, ..PanelConfig::PAPERS }, RATE);
+        outcome.pixel_errors().expect("a head")
+    });
+    assert!(global.judged > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
+    // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the last one.
+    let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
+    let pixels = places(96).flat_map(|y| places(128).map(move |x| (x, y)));
+    let expected = mean(pixels.map(|(x, y)| {
+        let part = ((y * 128 + x) as f64 - 12_287.0 / 2.0) / 12_288.0;
+        let [right, up] = [x as f64 + 0.5 - 64.0, 48.0 - (y as f64 + 0.5)];
+        let [seen_right, seen_up] = after(right, up, RATE * part / 30.0, focal_px(128.0));
+        (seen_right - right).hypot(seen_up - up)
+    }));
+    assert!((rolling.pixels.mean / expected - 1.0).abs() < 1e-3, "{} for {expected}", rolling.pixels.mean);
+}
+
+#[test]
+fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of_it() {
+    const RATE: f64 = 1.0;
+    for (persistence_us, response_us) in [(4_000, 0), (20_000, 0), (2_000, 1_000)] {
+        let config = PanelConfig { scan: 1, persistence_us, response_us, ..PanelConfig::PAPERS };
+        let outcome = on_panel(config, RATE);
+        let errors = outcome.pixel_errors().expect("a head");
+        let [p, r] = [persistence_us, response_us].map(|us| us as f64 * 1e-6);
+        let centre = off_px(p / 2.0 + r, RATE);
+        assert!((errors.centre_px.mean - centre).abs() < 1e-3, "{} for {centre}", errors.centre_px.mean);
+        let smear = EyeReport::shown(&outcome, Showing::Plain).and_then(|eye| eye.smear_px).expect("it smears");
+        // v t in the middle, and by the tangents more towards the edge: 1 + tan^2 of up to 24 degrees.
+        let width = (p * p + 12.0 * r * r).sqrt();
+        let in_the_middle = 2.0 * focal_px(128.0) * (RATE * width / 2.0).tan();
+        let mean_factor = smear.mean / in_the_middle;
+        assert!((1.0..1.15).contains(&mean_factor), "{} of {in_the_middle}", smear.mean);
+        assert_eq!(smear.n, errors.judged);
+    }
+}
+
+#[test]
+fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
+    let outcome = fields(head(Turning(1.0)), "full-screen:2");
+    assert_eq!(EyeReport::shown(&outcome, Showing::Plain), None);
+    assert_eq!(outcome.report().eye, None);
+    assert!(!serde_json::to_string(&outcome.report()).expect("numbers").contains("\"eye\""));
+}
+
+/// VDRT is a device of its own numbers beside what it always was.
+#[test]
+fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
+    assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
+    let outcome = fields(head(Turning(2.0)).before(Raster::Vdrt), "full-screen:2");
+    let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
+    assert_eq!((eye.device, eye.looked_at), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
+    assert!(eye.pose_age_ms.mean > 0.0);
+    assert_eq!(outcome.pixel_errors().expect("a head").empty, 0, "its picture goes on beyond the edge");
+}
+
+/// Behind delayed video the tracker's error alone remains: an ideal one has none, whatever the latency.
+#[test]
+fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_latency() {
+    let late = TrackerConfig::ideal().with_latency_ps(50_000_000_000);
+    let head = Head::new(Arc::new(Turning(2.0)), late, PredictorKind::None, 1).expect("in range");
+    let outcome = fields(head, "full-screen:2");
+    let delayed = PixelErrors::shown(&outcome, Showing::DelayedVideo);
+    assert!(delayed.judged > 0 && delayed.pixels.max < 1e-6, "{:?}", delayed.pixels);
+    let plain = PixelErrors::shown(&outcome, Showing::Plain);
+    assert!(plain.pixels.mean > focal_px(640.0) * 0.1, "{}: 50 ms of 2 rad/s and more", plain.pixels.mean);
+}
+
+/// Pixels of a picture that have the colour of all of their neighbours, but for a shade.
+fn is_flat(picture: &RgbImage, x: u32, y: u32) -> bool {
+    let near = |a: u32, b: u32| picture.get_pixel_checked(a, b).map(|pixel| pixel.0);
+    let here = picture.get_pixel(x, y).0;
+    let beside = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+    beside.iter().all(|(a, b)| near(*a, *b).is_some_and(|other| alike(other, here)))
+}
+
+fn alike(a: [u8; 3], b: [u8; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 8)
+}
+
+#[test]
+fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
+    let outcome = fields(head(Turning(1.0)), "gallery");
+    let views = outcome.head().expect("a head");
+    let [before, now] = [Time(300_000_000_000), Time(350_000_000_000)];
+    let [drawn, expected] = [before, now].map(|at| outcome.ideal_picture(SurfaceId(0), at).expect("an eye"));
+    let (moved, empty) =
+        reproject(drawn.image(), &HmdView::ntsc(), Warp::Rotation, &views.truth(before), &views.truth(now));
+    let flat = |(x, y, _): &(u32, u32, &image::Rgb<u8>)| {
+        moved.get_pixel(*x, *y).0 != [0; 3] && is_flat(expected.image(), *x, *y) && is_flat(&moved, *x, *y)
+    };
+    let compared: Vec<bool> = moved
+        .enumerate_pixels()
+        .filter(flat)
+        .map(|(x, y, pixel)| alike(pixel.0, expected.image().get_pixel(x, y).0))
+        .collect();
+    let same = compared.iter().filter(|same| **same).count();
+    let differs = drawn.image().pixels().zip(expected.image().pixels()).filter(|(a, b)| !alike(a.0, b.0)).count();
+    // 0.05 rad are 28 pixels of the middle column and more towards the edges: 28 to 40 of 640 columns are empty.
+    assert!((28 * 480..45 * 480).contains(&empty), "{empty}");
+    assert!(compared.len() > 150_000, "{}", compared.len());
+    assert!(differs > 30_000, "{differs}");
+    assert!(same as f64 > 0.995 * compared.len() as f64, "{same} of {}; {differs} differed before", compared.len());
+}
+
+/// With depth, at every line and without latency, a machine is as right as the reference that draws every pixel for its own instant.
+#[test]
+fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_was_hidden() {
+    let sliding = head(Slide::right_at(1.0));
+    let outcome = fields(sliding, "gallery");
+    let setting = Reprojection { by: Warp::Depth, every: Every::Line, latency_us: 0 };
+    let errors = PixelErrors::shown(&outcome, Showing::Reprojected(setting));
+    let eye =
+        EyeReport::shown(&outcome, Showing::Reprojected(setting)).and_then(|eye| eye.reprojection).expect("a device");
+    let plain = PixelErrors::of(&outcome);
+    assert!(errors.judged > 400 && errors.pixels.max < 0.1, "{} {}", errors.judged, errors.pixels.max);
+    assert!(plain.pixels.mean > 10.0 * errors.pixels.mean, "{} {}", plain.pixels.mean, errors.pixels.mean);
+    let share = eye.disoccluded_share.expect("depth");
+    assert!((0.0..0.05).contains(&share), "{share}");
+}
+
+#[test]
+fn a_panel_that_is_global_takes_one_pose_a_period() {
+    let config = PanelConfig { scan: 1, ..PanelConfig::PAPERS };
+    let display = config.build(&[pxpl5_wire::NodeId(1)]).expect("it can be built");
+    assert_eq!(display.light().scan, pxpl5_display::Scan::Global);
+    let outcome = on_panel(config, 1.0);
+    for every in [Every::Field, Every::Strip, Every::Line] {
+        let eye = EyeReport::shown(&outcome, device(Warp::Rotation, every)).and_then(|eye| eye.reprojection);
+        assert!((eye.expect("a device").poses_per_s - 30.0).abs() < 1e-9, "{every:?}");
+    }
+}

@@ -1,0 +1,37 @@
+// The scene of the run on a spinning screen, slice by slice and from any side.
+import { picture } from "./draw.js";
+
+const at = (id) => document.getElementById(id);
+
+/** Connects the part of the page to the worker: `ask` asks it, `pause` pauses the run, `refused` tells an error. */
+export function spinningScreen({ ask, pause, refused }) {
+  at("volume-draw").addEventListener("click", async () => {
+    pause();
+    at("volume-says").textContent = "Drawing ...";
+    try {
+      const begun = performance.now();
+      const [slices, width, height] = await ask("volume");
+      at("volume-says").textContent = `${slices} slices drawn in ${((performance.now() - begun) / 1000).toFixed(1)} s`;
+      Object.assign(at("slice"), { max: slices - 1, value: Math.round(slices / 4) });
+      Object.assign(at("slice-picture"), { width, height });
+      at("volume").hidden = false;
+      await Promise.all([slice(), round()]);
+    } catch (error) {
+      at("volume-says").textContent = "";
+      await refused(error);
+    }
+  });
+
+  async function slice() {
+    at("slice-number").textContent = at("slice").value;
+    picture(at("slice-picture"), await ask("slice", { number: Number(at("slice").value) }));
+  }
+
+  async function round() {
+    const [azimuth, elevation] = ["azimuth", "elevation"].map((id) => Number(at(id).value));
+    picture(at("volume-picture"), await ask("round", { azimuth, elevation, side: at("volume-picture").width }));
+  }
+
+  at("slice").addEventListener("input", slice);
+  for (const id of ["azimuth", "elevation"]) at(id).addEventListener("change", round);
+}

@@ -1,0 +1,171 @@
+//! Pose logs as programs on OpenXR write them: a predicted display time, a position and an orientation, as CSV or as lines of JSON.
+
+use serde_json::Value;
+
+use super::RecordingError;
+use super::columns::Column;
+
+/// Names of the columns without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
+const NAMES: [&str; 8] = [
+    "predicted_display_time",
+    "position_x",
+    "position_y",
+    "position_z",
+    "orientation_w",
+    "orientation_x",
+    "orientation_y",
+    "orientation_z",
+];
+
+/// Units of a time as the end of its name, as places of a second. Without one it is an `XrTime`: nanoseconds.
+const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
+
+const NANOSECONDS: i32 = 9;
+
+/// A column's name in words of small letters with `_` between them: `pose.position.x` and `posePositionX` are `position_x`.
+fn normal(name: &str) -> String {
+    let mut words = String::new();
+    let mut before = '_';
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && before.is_ascii_lowercase() {
+            words.push('_');
+        }
+        words.push(if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '_' });
+        before = letter;
+    }
+    let bare = words.trim_matches('_');
+    bare.strip_prefix("pose_").unwrap_or(bare).to_owned()
+}
+
+/// The place of a name in [`NAMES`], and for a time its unit.
+fn slot(name: &str) -> Option<(usize, i32)> {
+    let normal = normal(name);
+    if let Some(slot) = NAMES.iter().position(|known| *known == normal) {
+        return Some((slot, if slot == 0 { NANOSECONDS } else { 0 }));
+    }
+    let unit = UNITS.iter().find(|(unit, _)| normal.strip_suffix(unit) == Some(NAMES[0]));
+    unit.map(|(_, places)| (0, *places))
+}
+
+/// Returns true if a header is that of a pose log: it has a predicted display time, or a position and an orientation.
+pub(super) fn is_header(header: &[&str]) -> bool {
+    let has =
+        |begin: &str| header.iter().any(|name| slot(name).is_some_and(|(slot, _)| NAMES[slot].starts_with(begin)));
+    has("predicted") || (has("position") && has("orientation"))
+}
+
+/// The columns of a pose log, wherever they stand among others.
+pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
+    let mut found: [Option<Column>; 8] = Default::default();
+    for (index, name) in header.iter().enumerate() {
+        if let Some((slot, places)) = slot(name)
+            && found[slot].is_none()
+        {
+            found[slot] = Some(Column { index, name: (*name).to_owned(), places });
+        }
+    }
+    let missing: Vec<&str> =
+        NAMES.iter().zip(&found).filter(|(_, column)| column.is_none()).map(|(name, _)| *name).collect();
+    if !missing.is_empty() {
+        return Err(RecordingError::PoseLog { line, missing: missing.join(", "), found: header.join(", ") });
+    }
+    Ok(found.map(|column| column.expect("none is missing")))
+}
+
+/// Returns true if a file is lines of JSON.
+pub(super) fn is_json(first_line: &str) -> bool {
+    first_line.starts_with('{')
+}
+
+/// A line of JSON as the fields of a sample, in the order of [`NAMES`], with the name and the unit of its time.
+pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column), RecordingError> {
+    let unreadable = |found: String| RecordingError::Json { line, found };
+    let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
+    let mut all = Vec::new();
+    flatten("", &value, &mut all);
+    let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+    let columns = columns(line, &names)?;
+    let fields = columns.each_ref().map(|column| all[column.index].1.clone());
+    let [time, ..] = columns;
+    Ok((fields, time))
+}
+
+/// The numbers of a value with their paths. Lists are x, y, z and w, in the order of OpenXR.
+fn flatten(path: &str, value: &Value, all: &mut Vec<(String, String)>) {
+    let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(name, value)| flatten(&below(name), value, all)),
+        Value::Array(values) => {
+            ["x", "y", "z", "w"].iter().zip(values).for_each(|(name, value)| flatten(&below(name), value, all));
+        }
+        Value::String(text) => all.push((path.to_owned(), text.clone())),
+        other => all.push((path.to_owned(), other.to_string())),
+    }
+}
+
+/// Names of the columns of a sample that came from JSON, in their order.
+pub(super) fn json_columns(time: &Column) -> [Column; 8] {
+    std::array::from_fn(|index| Column {
+        index,
+        name: if index == 0 { time.name.clone() } else { NAMES[index].to_owned() },
+        places: if index == 0 { time.places } else { 0 },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::motion::{Motion, Recording, RecordingError};
+    use glam::{DQuat, DVec3};
+
+    fn read(text: &str) -> Result<Recording, RecordingError> {
+        Recording::read(text.as_bytes())
+    }
+
+    /// A quarter of a turn to the left within a second, while the head goes 2 m to the right.
+    const CSV: &str = "frame,predictedDisplayTime,position.x,position.y,position.z,orientation.x,orientation.y,orientation.z,orientation.w\n\
+        7,5000000000,0,1.5,0,0,0,0,1\n8,6000000000,2,1.5,0,0,0.70710678,0,0.70710678\n";
+
+    const JSON: &str = r#"{"predictedDisplayTime": 5000000000, "pose": {"orientation": {"x": 0, "y": 0, "z": 0, "w": 1}, "position": {"x": 0, "y": 1.5, "z": 0}}}
+
+{"predictedDisplayTime": 6000000000, "pose": {"orientation": [0, 0.70710678, 0, 0.70710678], "position": [2, 1.5, 0]}, "valid": true}
+"#;
+
+    #[test]
+    fn both_kinds_of_a_log_are_the_same_motion_whose_time_counts_from_its_first_line() {
+        for text in [CSV, JSON] {
+            let recording = read(text).expect("a pose log");
+            assert_eq!(recording.span_ps(), (0, 1_000_000_000_000));
+            let half = recording.pose(500_000_000_000);
+            assert!((half.position - DVec3::new(1.0, 1.5, 0.0)).length() < 1e-12);
+            let eighth = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_4);
+            assert!(half.orientation.angle_between(eighth) < 1e-6, "{:?}", half.orientation);
+        }
+    }
+
+    #[test]
+    fn a_time_may_have_a_unit_and_columns_any_order() {
+        let text = "orientation_w;orientation_x;orientation_y;orientation_z;position_x;position_y;position_z;predicted_display_time_ms\n\
+            1;0;0;0;0;0;0;20\n1;0;0;0;1;0;0;30.5\n";
+        assert_eq!(read(text).expect("a pose log").span_ps(), (0, 10_500_000_000));
+    }
+
+    #[test]
+    fn a_log_without_a_column_lists_what_is_missing_and_what_it_has() {
+        let error = read("predictedDisplayTime,position_x,position_y,roll\n0,0,0,0\n").expect_err("no pose");
+        assert_eq!(
+            error.to_string(),
+            "line 1: expected the columns of a pose log, of which position_z, orientation_w, orientation_x, orientation_y, orientation_z \
+             are missing; found predictedDisplayTime, position_x, position_y, roll"
+        );
+        let error = read("{\"predictedDisplayTime\": 1, \"yaw\": 2}\n").expect_err("no pose").to_string();
+        assert!(error.contains("position_x") && error.ends_with("found predictedDisplayTime, yaw"), "{error}");
+    }
+
+    #[test]
+    fn lines_that_are_no_numbers_or_no_json_are_named() {
+        let error = read(&JSON.replace("1.5, 0]", "\"up\", 0]")).expect_err("a word").to_string();
+        assert!(error.starts_with("line 3, position_y: expected a finite number"), "{error}");
+        let error = read(&JSON.replace("[2, 1.5, 0]", "[2, 1.5")).expect_err("an open list").to_string();
+        assert!(error.starts_with("line 3: expected an object of JSON"), "{error}");
+    }
+}
