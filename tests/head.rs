@@ -55,7 +55,9 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];
         own.extend((name == "vdrt").then_some(("binning", "touched")));
         let plan = plan(&[&shared[..], &own].concat());
-        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("the scene is small");
+        let experiment = plan.experiment(plan.load_scene().expect("built in"));
+        // A comparison evaluates all rows over the same periods.
+        let outcome = experiment.results_from(comparison.evaluated_from).run().expect("the scene is small");
         let report = outcome.report();
         let head = report.head.expect("a motion was given");
         let row = comparison.row(name).expect("a row for each");

@@ -44,8 +44,8 @@ const USUAL: [&str; 7] =
 
 /// Returns the names of the rows that a comparison of a few rows has: one or two for each family of pipelines.
 ///
-/// Of a family without a pipeline in [`USUAL`], such as one of another crate, the first pipeline is taken. Rows that are variants of a
-/// pipeline are always among them.
+/// A family without a usual pipeline, such as one of another crate, has its first pipeline. Rows that are variants of a pipeline are
+/// always among them.
 #[must_use]
 pub fn usual_rows(registry: &Registry) -> Vec<String> {
     let entries = registry.pipelines();
