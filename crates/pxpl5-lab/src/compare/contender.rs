@@ -38,6 +38,9 @@ impl ComparedPipeline {
     }
 }
 
+/// Row whose error is against the delayed video of the world, and so is no rival of the other rows.
+pub(super) const DELAYED_VIDEO: &str = "delayed-video";
+
 /// Pipelines that stand for their family where not all rows are run.
 const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
@@ -67,7 +70,7 @@ pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
         if entry.name == "slats" {
             all.push(ComparedPipeline::of_slats("slats-touched", Showing::Plain));
             all.push(ComparedPipeline::of_slats("vdrt", Showing::RasterOffset));
-            all.push(ComparedPipeline::of_slats("delayed-video", Showing::DelayedVideo));
+            all.push(ComparedPipeline::of_slats(DELAYED_VIDEO, Showing::DelayedVideo));
             all.push(ComparedPipeline::of_slats("ideal", Showing::Ideal));
         }
     }

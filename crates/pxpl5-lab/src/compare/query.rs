@@ -1,6 +1,6 @@
 //! The query of a comparison and its execution.
 
-use super::contender::{ComparedPipeline, compared_pipelines};
+use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::predictors::predictor_means;
 use super::row::ComparisonRow;
 use super::trial::{Trial, common_window_from};
@@ -282,12 +282,13 @@ impl Comparison {
     /// Returns the row with the least mean error.
     ///
     /// A row with pictures that were due and not shown is never the best. Neither is the reference, nor a row that was evaluated over other
-    /// periods.
+    /// periods, nor the row of delayed video, whose error leaves out the delay of the world.
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let judged =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
-        let timed = judged.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
+        let rivals = judged.filter(|row| row.pipeline != DELAYED_VIDEO);
+        let timed = rivals.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 
