@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// Plot the results of a sweep or a comparison with intervals, and write the numbers to a second file.
 ///
-/// Three files: the figure; FIG.csv with mean, standard deviation, n and the 95 % interval of the mean (Student's t)
+/// Three files: the figure; FIG.csv with mean, standard deviation, n and the interval of the mean (Student's t; of the logarithm for positive values)
 /// of every point; FIG.json with the origin of the numbers.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
