@@ -391,9 +391,9 @@ fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_t
     let all = comparison(90).run(|_, _| ()).expect("90 fields");
     let names: Vec<_> = all.pipelines.iter().map(|row| row.pipeline.as_str()).collect();
     println!("{names:?}");
-    assert_eq!(names.len(), 29);
+    assert_eq!(names.len(), 30);
     let json = serde_json::to_value(&all).expect("plain data");
-    assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(29));
+    assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(30));
     let mean = |name: &str| all.row(name).expect("a row").error.mean_px.mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
     // All pipelines aim at the middle of their display time. One field gives the same error in both, and two fields

@@ -2,7 +2,7 @@
 
 use crate::distribution::Distribution;
 use crate::percentiles::Percentiles;
-use pxpl5_run::Reprojection;
+use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
@@ -58,6 +58,8 @@ pub(crate) struct EyeSum {
 impl EyeSum {
     /// Returns empty sums that keep up to `limit` numbers of a kind. `smears` is true if pixels are lit for more than an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
+        // The limit is the same in every run: numbers beyond it are summed up in another way, which shows in the last digit of a mean.
+        let limit = limit.min(KEPT_SAMPLES);
         let smear = smears.then(|| Distribution::keeping(limit));
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
     }

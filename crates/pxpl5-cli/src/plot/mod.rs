@@ -19,8 +19,9 @@ use std::path::{Path, PathBuf};
 
 /// Plot the results of a sweep or a comparison with intervals, and write the numbers to a second file.
 ///
-/// Three files: the figure; FIG.csv with mean, standard deviation, n and the interval of the mean (Student's t; of the logarithm for positive values)
-/// of every point; FIG.json with the origin of the numbers.
+/// The command writes three files: the figure, FIG.csv and FIG.json. FIG.csv has the mean, the standard deviation, n and
+/// the interval of the mean of every point. The interval is Student's t, of the logarithm for positive values. FIG.json
+/// has the origin of the numbers.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
