@@ -275,7 +275,7 @@ impl Report {
         let pictures =
             (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
         let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
-        // Leave out the translation latency: a run that has discarded records does not know it.
+        // Leave out the translation latency, as when hashes of reports were first published.
         let mut arp = self.arp.clone();
         for memory in arp.iter_mut().flat_map(|faces| &mut faces.memories) {
             memory.translation_latency_ms = None;

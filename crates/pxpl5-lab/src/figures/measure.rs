@@ -419,9 +419,9 @@ mod tests {
     ///
     /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
     /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
-    /// columns of regions, and three the four rows. The triangle's box touches (1 + 4 (leg - 1) / width)(1 + 3 (leg -
-    /// 1) / height) regions on average. The triangle does not reach the far corner of the box. This removes half of
-    /// the cases in which a point where four regions meet lies in the box.
+    /// columns of regions, and three the four rows. The triangle's box touches on average
+    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach the far corner of the
+    /// box. This removes half of the cases in which a point where four regions meet lies in the box.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;
