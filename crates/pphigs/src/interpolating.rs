@@ -93,7 +93,7 @@ pub struct StripInterpolation<'a> {
     pub near: [i32; 2],
     /// Picture that contains the strip.
     pub picture: Picture,
-    /// Part of memory with the [recorded positions](KeepingEnds).
+    /// Part of memory with the [recorded positions](TriangleEndsRecorder).
     pub ends: MemoryPart,
     /// Part of memory that receives the strip's commands.
     pub commands: MemoryPart,
