@@ -1,4 +1,4 @@
-//! Execution in the floating-point half: adder, multiplier, their pipes, and the dual operations.
+//! Execution of floating-point instructions: adder, multiplier, their pipes, and the dual operations.
 
 use crate::action::{Floating, FloatingAction};
 use crate::arithmetic::{Operation, convert, double, multiply_low, narrow, operate, round, single, to_integer, widen};
@@ -10,8 +10,7 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes a floating-point instruction, or the floating-point half of a pair, with operands that were already
-    /// read.
+    /// Executes a floating-point instruction, alone or as half of a pair. The operands were read before the call.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
@@ -77,7 +76,7 @@ impl Cpu {
         single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
     }
 
-    /// Returns the pipe of the adder or the multiplier, depending on the operation.
+    /// Returns the pipe that an operation uses: the adder's or the multiplier's.
     #[inline(always)]
     fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
         let State { multiplier, adder, .. } = &mut self.state;
@@ -141,7 +140,7 @@ impl Cpu {
         push(&mut self.state.adder, 2, sum);
     }
 
-    /// Writes a scalar result of the adder to its register, or pushes a pipelined one into the adder's pipe.
+    /// Stores a result of the adder. A scalar result goes to its register; a pipelined result enters the adder's pipe.
     #[inline]
     fn adder_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
@@ -161,7 +160,8 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Sets CC by a comparison. The real chip pushes an undefined value into the pipe; this model pushes zero.
+    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the pipe; this model
+    /// pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
         let x = number(a, double);
@@ -189,8 +189,8 @@ impl Cpu {
         self.state.set_f(i.dest, PipeStage { bits, double: r });
     }
 
-    /// Converts to an integer. The high word of the result is undefined on the real chip: `fix` clears it here, scalar
-    /// `ftrunc` keeps it.
+    /// Converts a floating-point value to an integer. On the real chip the high word of the result is undefined. In
+    /// this model `fix` clears the high word, and scalar `ftrunc` keeps it.
     fn integer_part(&mut self, i: &Instruction, x: u64) {
         let wide = if i.has(Flags::SOURCE_DOUBLE) { x } else { widen(x as u32) };
         let mode = if i.op == Op::Fix { self.state.fsr >> fsr::RM_SHIFT & 3 } else { 3 };
@@ -206,7 +206,7 @@ impl Cpu {
         self.adder_result(i, PipeStage { bits, double: r });
     }
 
-    /// Executes pfam, pfsm, pfmam or pfmsm. K and T are read before they are reloaded.
+    /// Executes pfam, pfsm, pfmam or pfmsm. The registers K and T are read before new values are loaded into them.
     fn dual_operation(&mut self, i: &Instruction, from: Operands) {
         let s = i.has(Flags::SOURCE_DOUBLE);
         let r = i.has(Flags::RESULT_DOUBLE);
@@ -264,7 +264,8 @@ impl Cpu {
         self.push_sum(PipeStage { bits: u64::from(new_sum), double: false });
     }
 
-    /// Returns the values of all [`Source`]s in single or double precision, in the order of the enumeration.
+    /// Returns the values of all [`Source`]s in the order of the enumeration, as bit patterns. `double` selects double
+    /// precision.
     #[inline(always)]
     fn sources(&self, from: Operands, product: PipeStage, sum: PipeStage, double: bool) -> [u64; 7] {
         let product = self.in_precision(product, double);
@@ -286,10 +287,10 @@ impl Cpu {
     }
 }
 
-/// NaN in both precisions, so that the use of an undefined value shows in results.
+/// Bit pattern that is NaN in both precisions. The NaN makes the use of an undefined value visible in results.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
-/// Pushes a result into a pipe and returns the contents of its last stage.
+/// Pushes a result into a pipe and returns the value that leaves the last stage. `last` is the index of the last stage.
 #[inline(always)]
 fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
     let [first, second, _] = *pipe;
@@ -298,7 +299,7 @@ fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage 
     leaving
 }
 
-/// Destroys the results in a pipe, as a scalar operation does to the pipe of its unit.
+/// Replaces all results in a pipe by NaN, because a scalar operation destroys the pipe of its unit.
 #[inline(always)]
 fn lose(pipe: &mut [PipeStage; 3]) {
     for stage in pipe {
@@ -306,7 +307,7 @@ fn lose(pipe: &mut [PipeStage; 3]) {
     }
 }
 
-/// Returns the number that a bit pattern of a precision represents.
+/// Converts a bit pattern in single or double precision to a number.
 fn number(bits: u64, double: bool) -> f64 {
     f64::from_bits(if double { bits } else { widen(bits as u32) })
 }

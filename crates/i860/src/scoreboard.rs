@@ -1,14 +1,16 @@
-//! Scoreboard: registers that are not ready and execution units that are busy. Every wait ends at a known clock.
+//! Scoreboard: the registers that are not ready and the execution units that are busy. The end of every wait is a known
+//! clock.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::timing::{Config, FREEZES, Freeze};
 
-/// Value that equals no source register, not even `NONE` of an instruction without sources.
+/// Register number that matches no source register. The number also differs from `NONE`, the number of an absent
+/// operand.
 const NO_RESULT: u8 = 0xFE;
 
-/// A wait that a hazard imposes: its end as a clock, and its freeze row.
+/// A delay that a hazard causes: the clock at which the delay ends, and the row of the freeze table that causes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wait {
     pub(crate) until: u64,
@@ -17,12 +19,13 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// First value of [`Left::place`] for hazards. Lower values are registers; the highest value is the last result.
+/// First value of [`Left::place`] that denotes a hazard. Lower values denote registers. The highest value denotes the
+/// last floating-point result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A wait relative to a clock, in 16 bits. The upper seven say what is not ready, the next four the remaining clocks,
-/// the lower five the freeze row.
+/// A remaining wait, packed into 16 bits. The upper seven bits tell what is not ready. The next four bits hold the
+/// remaining clocks, and the lower five bits the freeze row.
 struct Left {
     place: u8,
     clocks: u8,
@@ -49,45 +52,47 @@ impl Left {
     }
 }
 
-/// Greatest number of waits in a [`PendingWaits`].
+/// Greatest number of waits that a [`PendingWaits`] can hold.
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// The pending waits of a scoreboard relative to a clock: a compact form of its state.
+/// The waits that remain at a certain clock: a compact copy of the scoreboard's state.
 ///
-/// Two scoreboards with the same leftover impose the same waits on all later instructions.
+/// Two scoreboards with equal pending waits delay all later instructions equally.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PendingWaits {
-    /// Packed waits in the order of [`Left::place`], the first one in the lowest bits; zero above the last.
+    /// Packed waits, sorted by [`Left::place`]. The lowest bits hold the first wait. The bits above the last wait are
+    /// zero.
     waits: u128,
     graphics_result: u64,
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// Rest of an arriving instruction line, which is also part of the state.
+    /// The instruction-cache line that is still arriving: its remaining clocks, and the transfer that arrives first.
     beside: [u8; 2],
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
     costs: Costs,
-    /// Hazard classes that the freeze rules take into account.
+    /// Hazard classes that at least one enabled freeze rule uses, as a bit mask.
     arms_seen: u16,
-    /// Registers (r in the low word, f in the high word) whose value may not be ready.
+    /// Mask of the registers whose value may be unavailable: integer registers in the low word, floating-point
+    /// registers in the high word.
     pending: u64,
     ready: [Wait; 64],
     armed: u16,
     hazards: [Wait; hazard::COUNT],
-    /// Destination register of the last floating-point instruction, for row 9.
+    /// Destination register of the last floating-point instruction. Freeze row 9 compares sources with this register.
     last_result: u8,
     last_result_until: u64,
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// Upper bound of the ends of all waits.
+    /// A clock at which, or before which, all waits end.
     latest: u64,
 }
 
-/// Iterates over the numbers of the set bits.
+/// Iterates over the positions of the set bits, the lowest position first.
 fn bits(mut set: u64) -> impl Iterator<Item = u8> {
     std::iter::from_fn(move || {
         let lowest = (set != 0).then(|| set.trailing_zeros() as u8);
@@ -114,8 +119,8 @@ impl Scoreboard {
         }
     }
 
-    /// Returns the waits that are pending at `now`, together with `beside`.
-    /// Returns `None` if there are too many waits, or if one lasts longer than `most` clocks.
+    /// Returns the waits that remain at clock `now`, together with `beside`. Returns `None` if there are too many
+    /// waits, or if a wait lasts longer than `most` clocks.
     pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<PendingWaits> {
         if self.latest > now + u64::from(most) {
             return None;
@@ -189,19 +194,19 @@ impl Scoreboard {
         }
     }
 
-    /// Forgets the wait for an integer register that a new load is about to overwrite.
+    /// Removes the wait for an integer register because a new load is about to overwrite the register.
     #[inline]
     pub(crate) fn forget(&mut self, dest: u8) {
         self.pending &= !(1 << dest);
     }
 
-    /// Returns true if [`Scoreboard::wait`] must be called for an instruction.
+    /// Returns true if an instruction can be delayed, so that [`Scoreboard::wait`] must be called.
     #[inline]
     pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
         d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
     }
 
-    /// Returns the longest wait of an instruction, and forgets hazards that have ended.
+    /// Returns the longest wait of an instruction, and removes the hazards that have ended.
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
@@ -276,7 +281,8 @@ impl Scoreboard {
 
     // ---- hazards that an instruction leaves
 
-    /// Records the hazards that an instruction leaves. Called after its execution.
+    /// Records the hazards that an instruction causes for later instructions. The caller has already executed the
+    /// instruction.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
         match d.arms & self.arms_seen {

@@ -1,19 +1,20 @@
-//! Assembler in Intel's syntax: `operation src1, src2, dest`, addresses as `8(r4)`, `r5(r4)`, `8(r4)++`.
+//! Assembler for the i860 in Intel's syntax. Operands are written `operation src1, src2, dest`, and addresses `8(r4)`,
+//! `r5(r4)` or `8(r4)++`.
 //!
 //! | written | meaning |
 //! |---|---|
 //! | `label:` | the current address |
 //! | `name = expression`, `.equ name, expression` | a constant |
-//! | `.org`, `.align`, `.space` | addresses; gaps between instructions are filled with `nop` |
+//! | `.org`, `.align`, `.space` | address directives; gaps between instructions are filled with `nop` |
 //! | `.long .short .byte .float .double` | data |
 //! | `.macro name a, b` … `.endm` | `\a` is an argument, `\@` a number unique to the call |
 //! | `.rept n` … `.endr` | repetition |
-//! | `h%x l%x ha%x` | halves of a constant; `ha%` goes with a signed `l%` |
+//! | `h%x l%x ha%x` | high half, low half, and high half for use with a sign-extended `l%x` |
 //! | `mov`, `nop`, `fmov.ss .dd .sd .ds` | the usual pseudo-operations; `mov constant, r` takes one or two words |
 //! | `;` | separates instructions on one line |
 //! | `// text` | a comment |
 //!
-//! After layout the assembler checks every instruction; the module `check` lists the rules.
+//! After all addresses are known, the assembler checks every instruction. The module `check` lists the rules.
 
 mod check;
 mod error;
@@ -36,35 +37,36 @@ use std::collections::BTreeMap;
 /// An assembled program with its labels, ready to be loaded into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
-    /// Address of the first byte.
+    /// Memory address of the first byte of the program.
     pub base: u32,
-    /// Contents from `base` on, including gaps.
+    /// All bytes of the program from address `base` on, including the bytes of gaps.
     pub bytes: Vec<u8>,
     /// Addresses of labels and values of constants, by name.
     pub symbols: BTreeMap<String, u32>,
-    /// Labels with their addresses, by address.
+    /// Names of labels with their addresses, sorted by address.
     pub labels: Vec<(String, u32)>,
-    /// Address and source line of every instruction, by address. After [`link`], lines count within each source.
+    /// Address and source line number of every instruction, sorted by address. After [`link`], line numbers start again
+    /// at 1 in each source.
     pub lines: Vec<(u32, usize)>,
-    /// The data of the program, by address.
+    /// Data blocks of the program, sorted by address.
     pub data: Vec<Data>,
-    /// Warnings in the order of their lines.
+    /// Warnings, sorted by source line.
     pub warnings: Vec<AssemblyWarning>,
 }
 
-/// Bytes that a directive puts into memory.
+/// A block of bytes that one directive puts into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Data {
-    /// Address of the first byte.
+    /// Memory address of the first byte of the data block.
     pub address: u32,
     /// Number of bytes.
     pub bytes: u32,
-    /// Line number in the source of the directive.
+    /// Line number of the directive in its source.
     pub line: usize,
     pub kind: DataKind,
 }
 
-/// Type of the data of a directive.
+/// Type of the values of a data directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
     /// Integers of this many bytes each: `.byte`, `.short`, `.long`.
@@ -78,7 +80,7 @@ pub enum DataKind {
 }
 
 impl Program {
-    /// Makes a program from its bytes, without labels and lines.
+    /// Makes a program from machine code. The program has no labels and no line numbers.
     #[must_use]
     pub fn of_bytes(base: u32, bytes: Vec<u8>) -> Program {
         Program {
@@ -92,7 +94,7 @@ impl Program {
         }
     }
 
-    /// Returns the contents as little-endian words. The last word is padded with zeros.
+    /// Returns the program as little-endian 32-bit words. The last word is padded with zero bytes.
     #[must_use]
     pub fn words(&self) -> Vec<u32> {
         self.bytes.chunks(4).map(word_of).collect()
@@ -105,11 +107,11 @@ impl Program {
     }
 }
 
-/// Assembles independent sources one after the other, each at a multiple of 32 bytes, into one program. If several
-/// sources define a label, the first definition counts.
+/// Assembles independent sources one after the other into one program. Each source begins at a multiple of 32 bytes. If
+/// several sources define the same label, the first definition is kept.
 ///
 /// # Errors
-/// The errors of [`assemble`], for the first source that has any.
+/// Returns the errors of [`assemble`] for the first source that has errors.
 ///
 /// ```
 /// let program = i860::link(0x1000, &[("one.s", "start: bri r1\n nop"), ("two.s", "start: nop\nother: bri r1\n nop")]).unwrap();
@@ -135,7 +137,7 @@ pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErro
     })
 }
 
-/// Returns a little-endian word of up to four bytes; missing bytes are zero.
+/// Makes a little-endian word from up to four bytes. Missing bytes are zero.
 fn word_of(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
@@ -147,7 +149,8 @@ enum Item {
         template: Instruction,
         operands: String,
     },
-    /// Values as the text of their line. A list of texts would take several times as much memory.
+    /// Integer values, stored as the text of their source line. One string for each value would take several times as
+    /// much memory.
     Integers {
         size: u32,
         values: String,
@@ -162,7 +165,7 @@ enum Item {
 }
 
 impl Item {
-    /// Returns the type of the data; `None` for an instruction.
+    /// Returns the type of the data, or `None` for an instruction.
     fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Instruction { .. } => None,
@@ -181,7 +184,7 @@ struct Placed {
     item: Item,
 }
 
-/// Greatest size of a program in bytes.
+/// Greatest size of an assembled program, in bytes.
 const MOST_BYTES: u32 = 16 << 20;
 
 struct Assembler<'a> {
@@ -194,10 +197,11 @@ struct Assembler<'a> {
     errors: Vec<AssemblyError>,
 }
 
-/// Assembles a source. `file` names the source in errors, `base` is the address of its first byte.
+/// Assembles one source text. `file` is the name of the source in error messages. `base` is the address of the first
+/// byte of the program.
 ///
 /// # Errors
-/// All errors, each with file, line and reason.
+/// Returns all errors of the source, each with file, line and reason.
 ///
 /// ```
 /// let program = i860::assemble("sum.s", 0x1000, "
@@ -229,10 +233,11 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
     assembler.finish()
 }
 
-/// Assembles one instruction at an address, without the checks that need its neighbours.
+/// Assembles one instruction at an address and returns its word. Checks that need the neighbouring instructions are
+/// left out.
 ///
 /// # Errors
-/// A description of the error in the text.
+/// Returns a description of the error in the text.
 pub fn instruction_word(text: &str, pc: u32) -> Result<u32, String> {
     let (word, rest) = split_word(text.trim());
     let instructions = pseudo(word, rest).unwrap_or_else(|| one(word, rest))?;
@@ -258,7 +263,7 @@ fn one(word: &str, operands: &str) -> Instructions {
     Ok(vec![plain(word, operands)?])
 }
 
-/// Replaces a pseudo-operation by real instructions; `None` for other operations.
+/// Replaces a pseudo-operation by real instructions. Returns `None` for real operations.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     // Split off the D prefix and the p of pipelined moves.
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
@@ -282,7 +287,8 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     }
 }
 
-/// Makes the instructions of `mov`: a register move, or a constant in one word if it fits, else in two.
+/// Makes the instructions of the pseudo-operation `mov`. The source is a register, or a constant that needs one or two
+/// instructions.
 fn mov(from: &str, to: &str) -> Instructions {
     if operand::integer_register(from).is_some() {
         return one("shl", &format!("r0, {from}, {to}"));
@@ -467,7 +473,8 @@ impl Assembler<'_> {
     }
 }
 
-/// Fills a gap. Aligned words become `nop`, so that code can run across an alignment.
+/// Fills the bytes of a gap between two addresses. Aligned words become `nop`, so that a program can run through the
+/// gap.
 fn fill_gap(bytes: &mut Vec<u8>, from: u32, to: u32) {
     let nop = Instruction { op: Op::Shl, flags: Flags(0), ..Instruction::new(Op::Shl) };
     let nop = encode(&nop).to_le_bytes();

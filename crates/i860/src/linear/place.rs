@@ -1,38 +1,38 @@
-//! The scheduler: places operations in pairs, clock by clock.
+//! Instruction scheduler: combines floating-point and core operations into pairs, one pair per clock.
 
 use super::machine::{Unit, Width};
 use super::parse::{Operation, Source};
 use super::settings::Settings;
 
-/// Stages of the adder's pipe, and of the multiplier's pipe with single sources.
+/// Number of stages of the adder's pipe, and of the multiplier's pipe for single-precision sources.
 const STAGES: usize = 3;
-/// Stages of the multiplier's pipe with double sources.
+/// Number of stages of the multiplier's pipe for double-precision sources.
 const DOUBLE_STAGES: usize = 2;
-/// Clocks after a prefetch in which no memory access is placed: the time of a line fill.
+/// Number of clocks after a prefetch in which the scheduler places no memory access. A cache-line fill takes this long.
 const PREFETCH: u32 = 18;
-/// Most stores that wait for the bus, and the clocks of one store on the bus.
+/// Greatest number of stores that can wait for the bus. One store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Clocks without progress after which the scheduler fails.
+/// Number of clocks without progress after which the scheduler fails.
 const PATIENCE: u32 = 80;
 
-/// The instruction pairs of a schedule: text of the floating-point half and text of the core half.
+/// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
 pub(super) type Pairs = Vec<(String, String)>;
 
 /// Chooses the clock of every operation and the registers of every value.
 ///
 /// # Errors
-/// A message if the values do not fit the registers.
+/// Returns a message if the registers cannot hold all values.
 pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings) -> Result<Pairs, String> {
     Placer::new(operations, pool, settings).run()
 }
 
-/// The location of a value.
+/// The location of a value: not computed yet, in a pipe, or in registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Nowhere,
     InPipe,
-    /// In registers from `register` on, readable from clock `at` on.
+    /// The value is in registers, from number `register` on. Operations can read the value from clock `at` on.
     Ready {
         at: u32,
         register: u8,
@@ -40,7 +40,8 @@ enum Place {
     Gone,
 }
 
-/// One register file. Each register has the clock from which it may be written, or `None` while it holds a value.
+/// One register file. Each entry is the first clock at which the register can be written, or `None` while the register
+/// holds a value.
 #[derive(Clone, Debug)]
 struct File {
     free_from: Vec<Option<u32>>,
@@ -60,7 +61,8 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Returns the first of `count` free registers. Values of one or two registers prefer gaps beside registers in use.
+    /// Finds `count` consecutive free registers and returns the first. For one or two registers, a gap beside used
+    /// registers is preferred.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // Values of two and four registers begin at a multiple of their length.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -97,21 +99,21 @@ struct Placer<'a> {
     heights: Vec<u32>,
     uses_left: Vec<usize>,
     places: Vec<Place>,
-    /// Clock at which each operation has issued; `None` before its issue.
+    /// Clock at which each operation was issued, or `None` before the operation is issued.
     issued: Vec<Option<u32>>,
     now: u32,
-    /// First line that has not issued.
+    /// Index of the first operation that was not issued yet.
     first: usize,
-    /// Number of coming multiplications that may not become dual operations, because a seed has destroyed the values in
-    /// the pipe.
+    /// Number of following multiplications that must stay single operations. A reciprocal approximation (`frcp`,
+    /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
     after_seed: usize,
-    /// Values in the pipes, the oldest first; `None` for a result that is not used.
+    /// Values in the adder's pipe, the oldest value first. `None` stands for a result that no operation reads.
     adder: Vec<Option<usize>>,
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
     multiplier_free: u32,
-    /// First register and register count of the result written by the floating-point operation of the previous clock,
-    /// for row 9.
+    /// First register and register count of the floating-point result of the previous clock. Freeze row 9 needs these
+    /// registers.
     last_result: Option<(u8, usize)>,
     last_result_at: u32,
     last_store: Option<u32>,
@@ -176,7 +178,7 @@ impl<'a> Placer<'a> {
         self.adder.iter().chain(&self.multiplier).any(Option::is_some)
     }
 
-    /// Advances [`Placer::first`] past the lines that have issued.
+    /// Advances [`Placer::first`] past the operations that were already issued.
     fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
@@ -238,7 +240,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if the value that a push moves out of a pipe finds free registers other than `but`.
+    /// Returns true if a push into the pipe is possible. The value that leaves the pipe needs free registers other than
+    /// `but`.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -250,8 +253,8 @@ impl<'a> Placer<'a> {
         self.operations[value].name.result.unwrap_or(Width::Integer)
     }
 
-    /// Returns true if both sources are the result of the previous operation, so that row 9 would freeze the
-    /// multiplication. With one such source the operands are swapped.
+    /// Returns true if both sources are the result of the previous operation. Freeze row 9 would then delay the
+    /// multiplication. If only one source is this result, the two operands are swapped instead.
     fn waits_for_first_source(&self, n: usize) -> bool {
         let sources = &self.operations[n].sources;
         self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
@@ -271,14 +274,14 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the register that a multiplication will have as its first source.
+    /// Returns the number of the register that a multiplication will read as its first source.
     fn first_source_register(&self, n: usize) -> Option<u8> {
         let sources = &self.operations[n].sources;
         self.register(&sources[usize::from(self.is_last_result(&sources[0]))])
     }
 
-    /// Returns true if registers are free for the result, beside those for the values in the pipes. The oldest line may
-    /// take the last ones.
+    /// Returns true if enough registers are free for the result and for the values in the pipes. Only the oldest
+    /// operation can take the last free registers.
     fn has_room(&self, n: usize, is_oldest: bool) -> bool {
         let Some(width) = self.operations[n].name.result else { return true };
         let count = width.registers();
@@ -298,7 +301,7 @@ impl<'a> Placer<'a> {
         fits && (free >= coming + count + spare || piped && is_oldest)
     }
 
-    /// Returns the number of registers that an operation must leave to earlier lines.
+    /// Returns the number of registers that an operation must leave free for earlier operations.
     fn spare(&self, n: usize) -> usize {
         let behind = n - self.first;
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
@@ -317,7 +320,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the pipe with the most urgent value, among those that can be pushed.
+    /// Returns the pipe (adder or multiplier) that holds the most urgent value, if the pipe can be pushed. The number
+    /// is the urgency in clocks.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -336,7 +340,7 @@ impl<'a> Placer<'a> {
             .max_by_key(|(height, _)| *height)
     }
 
-    /// Returns the longest path to the end from a value in a pipe.
+    /// Returns the urgency of a pipe, in clocks: the longest path from one of its values to the end of the program.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -389,7 +393,8 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}, {dest}", texts.join(", "))
     }
 
-    /// Turns an addition of singles into a dual operation that also pushes the multiplier's pipe, if no result is lost.
+    /// Turns a single-precision addition into a dual operation if no result is lost. The dual operation also pushes the
+    /// multiplier's pipe.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -405,7 +410,8 @@ impl<'a> Placer<'a> {
         dual
     }
 
-    /// Turns a multiplication into a dual operation that also pushes the adder's pipe, if no result is lost.
+    /// Turns a multiplication into a dual operation if no result is lost. The dual operation also pushes the adder's
+    /// pipe.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",
@@ -437,7 +443,8 @@ impl<'a> Placer<'a> {
         self.leave(leaving, None)
     }
 
-    /// Pushes an operation into the multiplier's pipe. Double sources skip the first of the three stages.
+    /// Pushes an operation into the multiplier's pipe. A double-precision operation skips the first of the three
+    /// stages.
     fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
         let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
         self.multiplies_double = double;
@@ -450,7 +457,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, first_source)
     }
 
-    /// Moves a value from a pipe to registers. Returns the text of the destination.
+    /// Moves a value from a pipe to registers. Returns the assembler text of the destination register.
     fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
         self.last_result = None;
         let Some(value) = value else { return "f0".to_owned() };
@@ -484,14 +491,14 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}", texts.join(", "))
     }
 
-    /// Returns true if an integer operation is the last to read one of its sources.
+    /// Returns true if an integer operation is the last reader of one of its source values.
     fn is_last_integer_use(&self, n: usize) -> bool {
         let mut read = self.operations[n].reads();
         self.operations[n].name.unit == Unit::Integer
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
     }
 
-    /// Frees integer registers that this operation is the last to read, so that its result may overwrite them.
+    /// Frees the integer registers whose last reader is this operation. The result of the operation can overwrite them.
     fn release_integers(&mut self, n: usize) {
         let read: Vec<usize> = self.operations[n].reads().collect();
         for value in read {
@@ -525,7 +532,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Assigns the registers of a result. Returns the text of the destination.
+    /// Assigns registers to a result. Returns the assembler text of the destination register.
     fn place(&mut self, n: usize, at: u32) -> String {
         let width = self.width(n);
         let (file, letter) = match width {
@@ -541,8 +548,8 @@ impl<'a> Placer<'a> {
         format!("{letter}{register}")
     }
 
-    /// Records the issue of an operation and frees the registers that it is the last to read.
-    /// The registers are free from the next clock on, or one clock later after a store (row 24).
+    /// Records the issue of an operation and frees the registers whose last reader is this operation. The registers are
+    /// free from the next clock on, or one clock later after a store (freeze row 24).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
@@ -570,7 +577,8 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// Returns the longest path from each operation to the end, in clocks, with noise for a shake other than 0.
+/// Returns the longest path from each operation to the end, in clocks. If `shake` is not 0, pseudo-random noise is
+/// added, so that other schedules are tried.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);
