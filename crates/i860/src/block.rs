@@ -1,4 +1,4 @@
-//! Straight runs of code, decoded once: from an address to the next branch with its slot.
+//! Basic blocks of decoded code. A block goes from an address to the next branch, with the branch's delay slot.
 
 use crate::action::Action;
 use crate::bus::Bus;
@@ -13,14 +13,14 @@ use crate::state::Mode;
 use crate::timing::ChipSizes;
 use crate::trap::TrapCause;
 
-/// Most instructions or pairs in a block, without the delay slot.
+/// Greatest number of instructions or pairs in a block, without the delay slot.
 const LONGEST: usize = 32;
 
-/// Code that issues in one clock: an instruction or a pair.
+/// Code that is issued in one clock: an instruction or a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Modes in which this instruction or pair and the next one execute.
+    /// Pairing mode for this instruction or pair.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
@@ -58,19 +58,19 @@ impl Unit {
         Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
     }
 
-    /// Returns the half that may access memory or branch: the core half of a pair, or the single instruction.
+    /// Returns the instruction that can access memory or branch: the core half of a pair, or the single instruction.
     #[inline]
     pub(crate) fn core(&self) -> &Decoded {
         self.second.as_ref().unwrap_or(&self.first)
     }
 
-    /// Returns the address of the core half.
+    /// Returns the address of the core half of a pair, or of the single instruction.
     #[inline]
     pub(crate) fn core_pc(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Returns the address after the instruction or pair.
+    /// Returns the address of the next instruction or pair.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -80,7 +80,8 @@ impl Unit {
         1 + u64::from(self.second.is_some())
     }
 
-    /// Returns true for `st.c`, which can change code or how it is fetched, so that a block must end after it.
+    /// Returns true if the block must end after this instruction. This is the case for `st.c`, which can change the
+    /// code or the way in which code is fetched.
     fn ends_block(&self) -> bool {
         self.core().instruction.op == Op::StC
     }
@@ -99,10 +100,10 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`], which is the number of no cache state.
+/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
 const NEVER: u64 = u64::MAX;
 
-/// A basic block: instructions and pairs up to a branch, up to one that cannot be executed, or up to the greatest
+/// A basic block: instructions and pairs up to a branch, an instruction that cannot be executed, or the greatest
 /// length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
@@ -111,29 +112,29 @@ pub(crate) struct Block {
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Mode and address of the code after the block.
+    /// Pairing mode and address of the code that follows the block.
     pub(crate) after: Mode,
     pub(crate) next: u32,
-    /// Number of instructions or pairs, without the delay slot.
+    /// Number of instructions or pairs. A pair counts as one. The delay slot is left out.
     pub(crate) count: usize,
-    /// Number of instructions, including the slot.
+    /// Number of instructions. A pair counts as two. The delay slot is included.
     pub(crate) instructions: u64,
-    /// Number of the instruction-cache state in which the whole block was last found in the cache.
+    /// Number of the instruction-cache state in which the cache last held the whole block.
     held_in: u64,
-    /// Effects of the instructions and pairs, and of the delay slot after them.
+    /// Effects of the instructions and pairs, in order. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
-    /// Instructions and pairs that access data, in order.
+    /// Instructions and pairs of the block that load or store data, in order.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// The instructions and pairs, then the delay slot.
+    /// All instructions and pairs of the block, in order. The delay slot is the last one.
     units: Box<[Unit]>,
-    /// Index of the first instruction or pair on each cache line.
+    /// For each cache line of the block, the index of the first instruction or pair on the line.
     lines: Box<[u8]>,
     /// Cause of the trap if the slot of the final branch cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// Properties of a data access that the clock needs.
+/// A load or store as the clock counts it, without its address and value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -154,7 +155,7 @@ pub(crate) struct AccessingUnit {
     /// Index of the instruction or pair in its block.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
-    /// True if the access always goes to the bus, regardless of the cache's contents.
+    /// True if the access always goes to the bus, even if the cache holds the data.
     pub(crate) leaves_cache: bool,
 }
 
@@ -172,7 +173,7 @@ impl AccessingUnit {
     }
 }
 
-/// Returns the index of the first instruction or pair on each cache line.
+/// Returns, for each cache line, the index of the first instruction or pair on the line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -181,10 +182,10 @@ fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
 }
 
 impl Block {
-    /// Decodes the block that begins at an address in a mode.
+    /// Decodes the block that begins at address `pc` in pairing mode `mode`.
     ///
     /// # Errors
-    /// The cause of the trap if the first instruction or pair cannot be executed.
+    /// Returns the cause of the trap if the first instruction or pair cannot be executed.
     pub(crate) fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Block, TrapCause> {
         let mut last = Unit::read(pc, mode, code, bus)?;
         // Decode up to a branch, an `st.c`, an illegal instruction or the greatest length.
@@ -239,13 +240,14 @@ impl Block {
         }
     }
 
-    /// Returns an instruction or pair by its index. The delay slot has the last index.
+    /// Returns the instruction or pair with index `number`. The delay slot has the last index.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line of an instruction or pair, and the index of the first one after that line.
+    /// Returns an address on the cache line of instruction or pair `number`. Also returns the index of the first
+    /// instruction or pair after this line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.
@@ -255,7 +257,7 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Returns true if the instruction cache holds the whole block.
+    /// Returns true if all cache lines of the block are in the instruction cache.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)
@@ -270,14 +272,14 @@ impl Block {
         held
     }
 
-    /// Returns true if the block begins at this address in this mode.
+    /// Returns true if the block begins at address `pc` in pairing mode `mode`.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
         self.pc == pc && self.mode == mode
     }
 
-    /// Returns true if an address lies after the first instruction or pair and before the end of the block, without its
-    /// delay slot.
+    /// Returns true if `address` lies inside the block, after the first instruction or pair. The delay slot does not
+    /// belong to this range.
     #[inline]
     pub(crate) fn passes(&self, address: u32) -> bool {
         let offset = address.wrapping_sub(self.pc);

@@ -1,5 +1,5 @@
-//! The clock: issue, freezes, caches and queues. The clock receives every executed block and changes no value of the
-//! program.
+//! The clock of the processor: instruction issue, freezes, caches and queues. The clock receives every executed block
+//! and changes no value of the program.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -20,25 +20,25 @@ use crate::translation::Translation;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
-/// Addresses of data accesses in order, at most one for each instruction or pair of a block.
+/// Addresses of data accesses in program order. Each instruction or pair of a block has at most one access.
 #[derive(Clone, Debug)]
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
-    /// True while every access was looked up in the data cache and hit.
+    /// True if every access so far was looked up in the data cache and found there.
     pub(crate) all_held: bool,
 }
 
 impl Accesses {
-    /// Capacity: a power of two, greater than the length of a block.
+    /// Capacity in accesses: a power of two that is greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Forgets all accesses before a new block. If `looks_up` is false, the accesses of the block are not looked up in
-    /// the cache.
+    /// Forgets the accesses of the previous block. If `looks_up` is false, the next accesses are not looked up in the
+    /// cache.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
@@ -68,7 +68,7 @@ pub(crate) struct Clock {
     pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// Remembered clocks of blocks; `None` without memoization.
+    /// Remembered clocks of blocks, or `None` if memoization is off.
     pub(crate) memo: Option<Memo>,
 }
 
@@ -120,7 +120,7 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbered scoreboard states with those of a shelf, which several processors share.
+    /// Exchanges the numbering of scoreboard states with `numbers`, which several processors share.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -128,21 +128,21 @@ impl Clock {
         }
     }
 
-    /// Turns translation on with page tables at an address, or off with `None`.
+    /// Turns address translation on with the page directory at an address, or off with `None`.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }
 
     // ---- blocks
 
-    /// Returns true if remembered clocks are reused. Address translation and profiles by address need every instruction
-    /// counted.
+    /// Returns true if remembered clocks can be reused. Address translation and profiles by address must count every
+    /// instruction.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
     }
 
-    /// Counts the clocks of the executed part of a block.
+    /// Counts the clocks of the part of a block that was executed.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !(accesses.all_held && self.reuse_block_clocks(block, execution)) {
@@ -150,7 +150,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block whose accesses or runs are not all remembered.
+    /// Counts the clocks of a block if its whole execution is not remembered as one run.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -162,7 +162,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block, one instruction or pair after the other.
+    /// Counts the clocks of a block, one instruction or pair after the other, without remembered clocks.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
@@ -198,7 +198,7 @@ impl Clock {
         }
     }
 
-    /// Charges the clocks of a data access, a branch or `st.c`.
+    /// Counts the clocks that a data access, a branch or `st.c` takes after its issue.
     #[inline]
     pub(crate) fn end<B: Bus>(&mut self, unit: &Unit, taken: bool, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
         let core = unit.core();
@@ -233,7 +233,7 @@ impl Clock {
         }
     }
 
-    /// Issues one instruction after its freezes.
+    /// Counts the freezes of a single instruction, then the clock of its issue.
     #[inline]
     fn issue_single(&mut self, d: &Decoded) {
         if self.board.may_wait(d) {
@@ -243,7 +243,7 @@ impl Clock {
         self.common.now += 1;
     }
 
-    /// Issues a pair. Both halves wait for the longer freeze.
+    /// Counts the freeze of a pair, then the clock of its issue. The longer freeze of the two halves counts.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         // Find the longest wait of both halves.
@@ -274,7 +274,8 @@ impl Clock {
         }
     }
 
-    /// Counts an integer load. A miss does not block; its destination becomes ready later.
+    /// Counts an integer load. If the load misses the cache, execution continues and the destination becomes ready
+    /// later.
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
         self.board.forget(dest);
@@ -286,7 +287,8 @@ impl Clock {
         }
     }
 
-    /// Counts a floating-point load. A miss blocks until all needed bytes have arrived; 16 bytes take two transfers.
+    /// Counts a floating-point load. A cache miss stops the processor until all needed bytes have arrived. A load of 16
+    /// bytes takes two transfers.
     #[inline]
     fn load_floating<B: Bus>(&mut self, address: u32, size: u8, bus: &B) {
         if let Some(transfer) = self.load(address, u32::from(size), bus)
@@ -298,7 +300,7 @@ impl Clock {
         }
     }
 
-    /// Looks `size` bytes up in the data cache. Returns the bus transfer that a miss has started.
+    /// Looks up `size` bytes in the data cache. Returns the bus transfer if the bytes are missing.
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
@@ -308,14 +310,15 @@ impl Clock {
         Some(transfer)
     }
 
-    /// Makes instructions of a hazard class wait until clock `until` of a running miss, if the freeze row applies.
+    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if the freeze row is enabled.
     fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }
     }
 
-    /// Counts a store: a hit changes the cache line, a miss goes through the store pipe to the bus without allocation.
+    /// Counts a store. A hit changes the cache line. A miss goes through the store pipe to the bus and allocates no
+    /// line.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);

@@ -1,4 +1,4 @@
-//! The processor: fetch, pairing, delay slots, traps, and the run loop.
+//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop of a run.
 
 use crate::action::{Action, Floating};
 use crate::assembler::Program;
@@ -18,21 +18,21 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// An i860 XR with its caches and clock; memory is passed in with every run.
+/// An i860 XR with its caches and its clock. The caller passes the memory to every run.
 pub struct Cpu {
-    /// Registers, pipes and mode that a program can read.
+    /// Registers, pipes and pairing mode, as far as a program can read them.
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Pairing mode after the delay slot, set by a return from a trap.
+    /// Pairing mode to use after the delay slot. A return from a trap sets this mode.
     pub(crate) mode_after_slot: Option<Mode>,
-    /// Data addresses that the current block has accessed.
+    /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
-    /// Cause of the trap of the instruction or pair that is being executed.
+    /// Cause of the trap that the current instruction or pair has raised, if any.
     cause: Option<TrapCause>,
-    /// Value that the current block has written to the directory-base register.
+    /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
-    /// True if decoded blocks may differ from the code in memory.
+    /// True if memory may have changed since its code was decoded.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,
@@ -45,7 +45,8 @@ impl fmt::Debug for Cpu {
 }
 
 impl Cpu {
-    /// Makes a processor after reset, at [`TRAP_VECTOR`], with empty caches.
+    /// Makes a processor in the state after reset: the next instruction is at [`TRAP_VECTOR`], and the caches are
+    /// empty.
     #[must_use]
     pub fn new(config: Config) -> Cpu {
         Cpu {
@@ -62,7 +63,7 @@ impl Cpu {
         }
     }
 
-    /// Makes a processor that executes at `pc` next.
+    /// Makes a processor whose next instruction is at address `pc`.
     #[must_use]
     pub fn at(config: Config, pc: u32) -> Cpu {
         let mut cpu = Cpu::new(config);
@@ -70,7 +71,7 @@ impl Cpu {
         cpu
     }
 
-    /// Returns the processor to its state after reset. Clocks start from 0 and the caches are empty.
+    /// Puts the processor into its state after reset. The clock starts from 0 and the caches are empty.
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
@@ -78,65 +79,66 @@ impl Cpu {
         self.invalidate_code();
     }
 
-    /// Returns the clocks since reset (0 without timing).
+    /// Returns the number of clocks since reset, or 0 if timing is off.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.time.now()
     }
 
-    /// Returns the number of instructions since reset or the last [`Cpu::clear_profile`].
+    /// Returns the number of instructions since the last reset or [`Cpu::clear_profile`].
     #[must_use]
     pub fn instructions(&self) -> u64 {
         self.time.instructions()
     }
 
-    /// Returns the number of instructions since reset whose clocks were reused instead of counted
+    /// Returns the number of instructions, since reset, whose clocks were reused instead of counted
     /// ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()
     }
 
-    /// Returns the clocks and misses by cause.
+    /// Returns the clocks and cache misses, sorted by cause.
     #[must_use]
     pub fn profile(&self) -> Profile {
         self.time.profile()
     }
 
-    /// Starts a new profile. Caches, queues and the clock are unchanged.
+    /// Sets all counts of the profile to zero. Caches, queues and the clock are unchanged.
     pub fn clear_profile(&mut self) {
         self.time.clear_profile();
     }
 
-    /// Empties the caches and the TLB without write-backs or time: a cold start for measurements.
+    /// Empties the caches and the TLB without write-backs and without simulated time. A measurement then has a cold
+    /// start.
     pub fn empty_caches(&mut self) {
         self.time.empty_caches();
     }
 
-    /// Starts to record clocks by address. `None` stops the recording.
+    /// Starts to count clocks for each code address in `addresses`. `None` stops the counting.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
 
-    /// Returns the clocks by address that [`Cpu::watch`] has recorded.
+    /// Returns the clocks for each code address since [`Cpu::watch`] was called.
     #[must_use]
     pub fn watched(&self) -> Option<&AddressProfile> {
         self.time.sampler.as_ref()
     }
 
-    /// Forgets all decoded instructions, which are read ahead up to the next branch.
-    /// Call this function after another device has written to code. The processor's own stores into code take effect at
+    /// Discards all decoded instructions. The processor decodes instructions ahead, up to the next branch. Call this
+    /// function after another device has written to code in memory. The processor's own stores into code take effect at
     /// once (the real part would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
         self.code.clear();
         self.code_changed = false;
     }
 
-    /// Takes the decoded code of `program` from a shelf of decoded programs and uses it until [`Cpu::close`].
-    /// The memory must hold the program as it was assembled. With `None` the processor decodes all code anew. No clock
-    /// changes.
+    /// Takes the decoded code of `program` from `shelf`, the shared store of decoded programs. The processor uses the
+    /// code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None` the processor decodes all code
+    /// anew. The number of clocks does not depend on this call.
     ///
-    /// All processors that use a shelf must have the same [`Config::freezes`].
+    /// All processors that share the store must have the same [`Config::freezes`].
     pub fn open(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
         self.code = program.map_or_else(Code::new, |program| shelf.take(program));
         self.code_changed = false;
@@ -144,7 +146,7 @@ impl Cpu {
         self.time.fetch.number_states_from(shelf.cache_states);
     }
 
-    /// Returns the decoded program and its clocks to its shelf. Returns true if the shelf can reuse them.
+    /// Returns the decoded program and its remembered clocks to `shelf`. Returns true if other processors can use them.
     /// If a store has changed the program in memory, the decoded code is dropped and the result is false.
     pub fn close(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut shelf.numbers);
@@ -155,9 +157,9 @@ impl Cpu {
         true
     }
 
-    /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
-    /// been executed.
-    /// A branch and its slot stay together, so a run can exceed the budget by up to three instructions.
+    /// Runs the program until one of three events: `stop` is reached in single-instruction mode, a trap is taken, or
+    /// `budget` more instructions were executed. A branch and its delay slot stay together, so a run can exceed the
+    /// budget by up to three instructions.
     pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> RunEnd {
         let end = self.instructions().saturating_add(budget);
         loop {
@@ -173,16 +175,16 @@ impl Cpu {
         }
     }
 
-    /// Executes one instruction or pair, or a delayed branch together with its slot.
+    /// Executes one instruction, one pair, or one delayed branch together with its slot.
     ///
     /// # Errors
-    /// The trap that was taken. The next step executes the first instruction of its handler.
+    /// Returns the trap that was taken. The next step executes the first instruction of the trap handler.
     pub fn step<B: Bus>(&mut self, bus: &mut B) -> Result<(), Trap> {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block at pc. Executes only its first instruction or pair if the block goes past `stop` or has more
-    /// than `most` instructions.
+    /// Executes the block that begins at `pc`. If the block goes past `stop` or has more than `most` instructions, only
+    /// its first instruction or pair is executed.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.
@@ -213,7 +215,8 @@ impl Cpu {
         }
     }
 
-    /// Executes at most `most` instructions or pairs of a block and the slot of their branch, then counts their clocks.
+    /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts their
+    /// clocks.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());
@@ -223,8 +226,8 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Sets pc and mode for the next block. Executes the delay slot first if the last instruction was a taken delayed
-    /// branch.
+    /// Sets the address and pairing mode of the next block. If the last instruction was a taken delayed branch, its
+    /// delay slot is executed first.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
         // Begin with the address right after the executed code; a jump or trap overrides it below.
@@ -273,7 +276,7 @@ impl Cpu {
         }
     }
 
-    /// Returns the control flow of an instruction, and records the cause if it trapped.
+    /// Returns the control flow after an instruction. If the instruction trapped, the cause is recorded.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))
@@ -285,8 +288,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes instructions and pairs of a block until one changes the flow. Returns their number and the flow after
-    /// the last one.
+    /// Executes instructions and pairs of a block until one of them branches or traps. Returns the number of executed
+    /// instructions or pairs, and the control flow after the last one.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {
@@ -298,8 +301,8 @@ impl Cpu {
         (actions.len(), Flow::Next)
     }
 
-    /// Executes an instruction or pair. Both halves of a pair read before either writes. The core half goes first, so
-    /// that its trap leaves the floating-point half undone.
+    /// Executes an instruction or pair. Both halves of a pair read their operands before either half writes its result.
+    /// The core half executes first, so the floating-point half has no effect if the core half traps.
     #[inline(always)]
     fn unit<B: Bus>(&mut self, action: &Action, block: &Block, bus: &mut B) -> Flow {
         let unit = || block.unit(usize::from(action.number));
@@ -311,7 +314,7 @@ impl Cpu {
         flow
     }
 
-    /// Raises the interrupt pin for a moment. Returns false if psr.IM disables interrupts.
+    /// Raises the interrupt pin for a moment. Returns false if interrupts are disabled because psr.IM is clear.
     pub fn interrupt(&mut self) -> bool {
         let enabled = self.state.psr & psr::IM != 0;
         if enabled {

@@ -1,31 +1,33 @@
-//! Memoization: clocks of repeated runs of code, reused instead of counted again.
+//! Memoization: the clocks of repeated code are remembered and reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
 //! of an arriving instruction line, and the branches and traps of its execution.
 //!
-//! Each distinct scoreboard has a number, so that a run is found by comparing integers. Between two runs, accesses that
-//! leave the caches are counted with the full scoreboard.
+//! Each distinct scoreboard has a number, so a run is found by a comparison of integers. Between two runs, accesses
+//! that need the bus are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{PendingWaits, Scoreboard};
 use crate::timing::{FREEZES, N_FREEZES};
 use rustc_hash::FxHashMap;
 
-/// Longest remaining wait, in clocks, of a scoreboard that gets a number.
+/// Longest remaining wait of a scoreboard that can get a number, in clocks. Scoreboards with longer waits get no
+/// number.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Greatest number of numbered scoreboards. Code after other scoreboards is counted instruction by instruction.
+/// Greatest number of scoreboard states that get a number. After any other state, code is counted instruction by
+/// instruction.
 const MOST_NUMBERS: usize = 1 << 15;
 
-/// The number of a distinct scoreboard state, with a bit that is set while an instruction line arrives.
+/// The number of a scoreboard state. One bit is set while an instruction-cache line is arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number(u32);
 
 impl Number {
     const FILLING: u32 = 1 << 31;
 
-    /// Returns true if an instruction line is still arriving.
+    /// Returns true if an instruction-cache line was still arriving in this state.
     #[inline]
     pub(crate) fn is_filling(self) -> bool {
         self.0 & Number::FILLING != 0
@@ -39,12 +41,12 @@ pub(crate) struct Numbers {
     leftovers: Vec<PendingWaits>,
 }
 
-/// The memory of scoreboard states, and the number of the current state.
+/// The numbering of scoreboard states, and the number of the current state.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state while remembered runs follow each other; `None` while the [`Scoreboard`]
-    /// itself holds the state.
+    /// Number of the current scoreboard state after a remembered run. `None` means that the [`Scoreboard`] itself holds
+    /// the state.
     present: Option<Number>,
     /// Number of executed instructions whose clocks were reused.
     pub(crate) instructions: u64,
@@ -55,13 +57,13 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// Returns the number of the current scoreboard state, or `None` while the [`Scoreboard`] itself holds the state.
+    /// Returns the number of the current scoreboard state. `None` means that the [`Scoreboard`] itself holds the state.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
     }
 
-    /// Returns the number of a scoreboard state, and assigns a new number if there is room.
+    /// Returns the number of a scoreboard state. A new state gets a new number, or `None` if the table is full.
     pub(crate) fn number_of(&mut self, written: &Scoreboard, now: u64, fill: ArrivingLine) -> Option<Number> {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
@@ -83,15 +85,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Continues with the scoreboard state at the end of a remembered run.
+    /// Makes the state after a remembered run the current scoreboard state.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Stops using the number of the current state. Returns the state that the [`Scoreboard`] must be restored from, or
-    /// `None` if the [`Scoreboard`] is up to date.
+    /// Stops using the number of the current state. Returns the waits from which the [`Scoreboard`] must be restored,
+    /// or `None` if the [`Scoreboard`] is up to date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -100,30 +102,31 @@ impl Memo {
 
 const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
-/// The rest of an instruction line that is arriving.
+/// The part of an instruction-cache line that has not arrived yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
-    /// Clocks to the last transfer; 0 if no line is arriving.
+    /// Number of clocks until the last transfer of the line arrives, or 0 if no line is arriving.
     pub(crate) clocks: u64,
-    /// Position, within the line, of the transfer that arrives first.
+    /// Position, within the cache line, of the 8-byte transfer that arrives first.
     pub(crate) first: u8,
 }
 
-/// The key of a run of code: a single number, never 0.
+/// The key of a run, a part of a block whose instructions and data are all in the caches. The key is a number other
+/// than 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run from the scoreboard before it and from its first and last place in the block.
-    /// The flags say that its branch was taken, that its last instruction trapped, and that its first fetch is from the
-    /// arriving line.
+    /// Makes the key of a run from the scoreboard before it and from its first and last position in the block. The
+    /// flags have this meaning: the branch was taken, the last instruction trapped, and the first fetch is from a cache
+    /// line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
         Run(u64::from(entry.0) << 32 | flags << 16 | (from as u64 & 0xFF) << 8 | to as u64 & 0xFF)
     }
 
-    /// Returns the place in the block at which the run ends.
+    /// Returns the position in the block at which the run ends.
     #[inline]
     pub(crate) fn end(self) -> usize {
         usize::from(self.0 as u8)
@@ -136,17 +139,18 @@ impl Run {
     }
 }
 
-/// Clocks waited by cause: the cause in the lower five bits of each entry, zero after the last entry.
+/// Clocks of delay, by cause. Each entry has the cause in its lower five bits and the clocks above. Entries after the
+/// last one are zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
 impl WaitedClocks {
     const CAUSE_BITS: u32 = 5;
-    /// Greatest number of causes of waits in one run.
+    /// Greatest number of causes of delay in one run.
     const MOST: usize = 6;
 
-    /// Returns the clocks waited between two profiles. Returns `None` if there are too many causes or if one has too
-    /// many clocks for its entry.
+    /// Returns the clocks of delay, by cause, that profile `after` has in addition to `before`. Returns `None` if there
+    /// are too many causes, or if the clocks of a cause exceed the size of an entry.
     fn between(before: &Profile, after: &Profile) -> Option<WaitedClocks> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
         let mut all = WaitedClocks::default();
@@ -156,7 +160,7 @@ impl WaitedClocks {
         Some(all)
     }
 
-    /// Adds the clocks to `frozen`, which has one sum for each cause.
+    /// Adds the clocks to `frozen`, an array with one sum for each freeze row.
     #[inline]
     pub(crate) fn add_to(&self, frozen: &mut [u64; N_FREEZES]) {
         for wait in self.0 {
@@ -170,7 +174,7 @@ impl WaitedClocks {
     }
 }
 
-/// The remembered clocks of a run. The size is half a cache line of most hosts.
+/// The remembered clocks of a run. The entry fills half a cache line of most host computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
@@ -179,9 +183,9 @@ pub(crate) struct RememberedClocks {
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Cache line of the last fetch.
+    /// Number of the cache line from which the run's last fetch came.
     pub(crate) line: u32,
-    /// Clocks waited in the run, by cause.
+    /// Clocks of delay in the run, by cause.
     pub(crate) waited: WaitedClocks,
 }
 
@@ -195,8 +199,8 @@ impl RememberedClocks {
         waited: WaitedClocks([0; WaitedClocks::MOST]),
     };
 
-    /// Makes the entry of a run from its clocks and from the profiles before and after it. Returns `None` if a number
-    /// is too large for its field.
+    /// Makes the entry of a run. The delays are the difference between the profiles before and after the run. Returns
+    /// `None` if a number is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = WaitedClocks::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
@@ -204,15 +208,16 @@ impl RememberedClocks {
     }
 }
 
-/// The remembered runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of its hash.
+/// The remembered runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the position
+/// given by its hash.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
 impl BlockMemory {
-    /// Smallest and greatest size of the table.
+    /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of table entries in which a run may lie.
+    /// Number of successive entries that are searched for a run.
     const REACH: usize = 4;
 
     #[inline]
@@ -224,8 +229,7 @@ impl BlockMemory {
         })
     }
 
-    /// Adds a run that the table does not contain. If a table of the greatest size has no free entry, the run replaces
-    /// another one.
+    /// Adds a run that is new to the table. If a table of the greatest size has no free entry, another run is replaced.
     pub(crate) fn add(&mut self, remembered: RememberedClocks) {
         while !self.put(remembered) {
             if self.0.len() >= BlockMemory::MOST {
@@ -237,7 +241,7 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run into a free table entry near its hash. Returns false if none is free.
+    /// Puts a run into a free entry near the position given by its hash. Returns false if no entry is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -245,7 +249,7 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Doubles the size of the table. Runs without a free entry in the new table are dropped.
+    /// Doubles the size of the hash table. Runs that find no free entry in the new table are dropped.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

@@ -1,10 +1,10 @@
-//! The clock of a basic block, run by run. A *run* is a part of a block whose instructions and data are all in the
-//! caches; its remembered clocks are reused. Accesses between runs that leave the caches are counted.
+//! The clocks of a basic block, counted run by run. A *run* is a part of a block whose instructions and data are all in
+//! the caches. The remembered clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
-//! A *place* in a block is three times the index of an instruction or pair, plus 1 after its fetch and plus 2 after its
-//! issue. A run ends before an access that leaves the data cache, before a line that the instruction cache does not
-//! hold, or at the end of the executed code. After an access that leaves the data cache, the next run begins with the
-//! state that the access has left.
+//! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch and plus
+//! 2 after its issue. A run ends at one of three places: before an access that needs the bus, before a line that the
+//! instruction cache does not hold, or at the end of the executed code. After an access that needs the bus, the next
+//! run begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -13,27 +13,28 @@ use crate::execution::Execution;
 use crate::memo::{Memo, Number, RememberedClocks, Run};
 use crate::timing::Freeze;
 
-/// Number of places for each instruction or pair: before its fetch, before its issue, after its issue.
+/// Number of positions that each instruction or pair has: before its fetch, before its issue, and after its issue.
 const PLACES: usize = 3;
 const FETCHED: usize = 1;
 const ISSUED: usize = 2;
 
-/// The executed part of a block, and the place up to which its clocks are counted.
+/// The progress of the clock in a block: the executed part, and the position up to which clocks are counted.
 struct Course<'a> {
     execution: Execution,
-    /// Number of executed instructions or pairs.
+    /// Number of instructions or pairs that were executed.
     units: usize,
-    /// Index of the last instruction or pair of the block.
+    /// Index of the block's last instruction or pair.
     last: usize,
-    /// Addresses of all data accesses, and the number of accesses counted so far.
+    /// Addresses of all data accesses of the block. `accessed` is the number of accesses that were counted so far.
     accesses: &'a [u32],
     accessed: usize,
-    /// Place in the block up to which clocks are counted.
+    /// Position in the block up to which clocks are counted, in thirds of an instruction or pair.
     at: usize,
 }
 
 impl Course<'_> {
-    /// Returns the flags of a run up to place `to`: branch taken, trapped, first fetch from the arriving line.
+    /// Returns the flags in the key of a run that ends at position `to`. The flags tell whether the branch was taken,
+    /// the last instruction trapped, and the first fetch is from a cache line that is still arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -42,8 +43,8 @@ impl Course<'_> {
 }
 
 impl Clock {
-    /// Reuses the clocks of a block whose accesses all hit. Returns false if its code is not in the cache, or if it is
-    /// not remembered as one run.
+    /// Reuses the clocks of a whole block whose data accesses all hit the cache. Returns false if the instruction cache
+    /// does not hold the block, or if the block is not remembered as one run.
     #[inline]
     pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
@@ -59,13 +60,13 @@ impl Clock {
         true
     }
 
-    /// Returns true if fetches from a block hit the instruction cache or cost nothing.
+    /// Returns true if no fetch from the block adds clocks: the instruction cache holds the block, or fetches are free.
     #[inline]
     fn holds(&self, block: &mut Block) -> bool {
         !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
     }
 
-    /// Counts the clocks of a block, from one access that leaves the caches to the next.
+    /// Counts the clocks of a block. The block is split at accesses that need the bus; the runs in between are reused.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
@@ -84,14 +85,15 @@ impl Clock {
         }
     }
 
-    /// Returns the number of the current scoreboard state, and assigns a new number if there is room.
+    /// Returns the number of the current scoreboard state. A new state gets a new number, or `None` if there is no
+    /// room.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Restores the scoreboard after remembered runs, which change only the number of its state.
+    /// Brings the scoreboard up to date after remembered runs, which change only the number of its state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -99,7 +101,7 @@ impl Clock {
         }
     }
 
-    /// Advances to the end of the current run, and past the access or miss that ends it.
+    /// Counts clocks to the end of the current run, and also the access or cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
@@ -135,7 +137,7 @@ impl Clock {
         }
     }
 
-    /// Counts an access that leaves the cache.
+    /// Counts the clocks of an access that needs the bus.
     #[inline]
     fn count_cache_exit<B: Bus>(&mut self, unit: &AccessingUnit, address: u32, bus: &B) {
         if !unit.is_store {
@@ -152,7 +154,7 @@ impl Clock {
         }
     }
 
-    /// Fetches from a line that the cache does not hold.
+    /// Counts the fetch of a cache line that the instruction cache does not hold.
     fn miss<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, bus: &B) {
         self.write_board();
         let unit = block.unit(course.at / PLACES);
@@ -165,8 +167,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks up to a place in the block. If the start lies after an issue, the access of that instruction
-    /// was already counted.
+    /// Counts clocks up to position `to` in the block. If counting starts after the issue of an instruction, the data
+    /// access of this instruction was already counted.
     fn advance<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, to: usize, bus: &B) {
         self.write_board();
         let from = course.at;
@@ -202,7 +204,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a run and remembers them for later executions.
+    /// Counts the clocks of a run and remembers them for later executions of the same run.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
         // Count the run with the full rules and compare the profiles before and after.

@@ -1,9 +1,9 @@
-//! Errors of reading, setting or checking a number.
+//! Errors that occur when a parameter is read, set or checked.
 
 use crate::{ParameterInfo, Value};
 use thiserror::Error;
 
-/// The reason why a parameter cannot be read or set, or why the model cannot use it.
+/// The reason why a parameter cannot be read or set, or why the model rejects its value.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ParameterError {
@@ -12,10 +12,10 @@ pub enum ParameterError {
     Unknown {
         /// Requested name.
         name: String,
-        /// Names of the table, in its order.
+        /// Names of all parameters of the table, in the order of the fields.
         valid: Vec<&'static str>,
     },
-    /// A field of whole numbers cannot hold the value.
+    /// The value is not whole, but the field holds whole numbers.
     #[error("{name} must be a whole number, found {found}")]
     NotWhole {
         /// Field name within its table.
@@ -36,7 +36,8 @@ pub enum ParameterError {
 }
 
 impl ParameterError {
-    /// Makes the error of a table that lacks the name. Tables not made by the macro can use it too.
+    /// Makes the error of a table that has no parameter called `name`. Tables that are written without the macro can
+    /// also use this function.
     #[must_use]
     pub fn unknown(name: &str, infos: &[ParameterInfo]) -> Self {
         let valid = infos.iter().map(|info| info.name).collect();

@@ -1,18 +1,18 @@
-//! Unit, provenance, range and source of a number.
+//! Unit, provenance, range and source of a parameter.
 
 use crate::Value;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The provenance of a number.
+/// The provenance of a parameter's value: printed, calculated or assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Printed in a paper or manual that the authors of this program have read.
+    /// The value is printed in a paper or manual that the authors of this program have read.
     Published,
-    /// Follows by arithmetic from published figures.
+    /// The value follows by arithmetic from published figures.
     Derived,
-    /// A recollection or an engineering estimate, with the range that the published figures allow.
+    /// The value is recollected or estimated. Its range is as wide as the published figures allow.
     Assumed,
 }
 
@@ -26,16 +26,16 @@ impl fmt::Display for Standing {
     }
 }
 
-/// Unit, provenance, range and source of one number of a table.
+/// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ParameterInfo {
-    /// Field name within its table.
+    /// Field name of the parameter within its table.
     pub name: &'static str,
-    /// Unit of value, range and limits; "1" for a pure number.
+    /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
     pub unit: &'static str,
-    /// Provenance of the value.
+    /// Provenance of the parameter's value: printed, calculated or assumed.
     pub standing: Standing,
-    /// Initial value of a table, which the papers give or allow.
+    /// Initial value of the parameter. The papers print this value or allow it.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
@@ -46,7 +46,7 @@ pub struct ParameterInfo {
 }
 
 impl ParameterInfo {
-    /// Returns the range of a whole number; `None` for a real number.
+    /// Returns the range of a parameter that is a whole number. Returns `None` for a real number.
     #[must_use]
     pub fn whole_range(&self) -> Option<(u64, u64)> {
         match self.range {

@@ -1,6 +1,6 @@
-//! Tables of numbers with unit, provenance, range and source.
+//! Tables of parameters. Each parameter has a unit, a provenance, a range and a source.
 //!
-//! A [`parameter_table!`] declares the numbers once. The declaration has four uses:
+//! A [`parameter_table!`] declares the parameters once. The declaration has four uses:
 //!
 //! ```text
 //!                        +--> table.word_ns        code reads a plain public field
@@ -17,8 +17,8 @@
 //! ```
 //!
 //! The parts are value, unit, provenance, the *range* that the sources allow, the *limits* within which the model
-//! works, and source. Without limits, the range also serves as the limits. Numbers are whole (`u64`, exact) unless the
-//! line says `f64`:
+//! works, and source. If a line has no limits, the range also serves as the limits. Values are whole numbers (`u64`,
+//! exact) unless the line says `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.
@@ -27,11 +27,12 @@
 //!
 //! # Range and limits
 //!
-//! A value outside its range is possible in an experiment, although no source allows it
-//! ([`ParameterTable::out_of_range`] lists such values). A value outside its limits is an error
-//! ([`ParameterTable::check`]).
+//! A value outside its range is possible in an experiment, although no source allows such a value.
+//! [`ParameterTable::out_of_range`] lists these parameters. A value outside its limits is an error of
+//! [`ParameterTable::check`].
 //!
-//! **Not here:** rules between numbers ("at most the length of a line"). The crate that owns the table checks them.
+//! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
+//! table checks these rules.
 
 mod error;
 mod info;

@@ -1,9 +1,9 @@
-//! The macro that declares a table.
+//! The macro that declares a table of parameters.
 
-/// Declares a struct of numbers, each with initial value, unit, provenance, range, limits and source.
+/// Declares a struct of parameters. Each parameter has an initial value, unit, provenance, range, limits and source.
 ///
-/// Limits may end at `MAX`, which is [`MAX`](crate::MAX). The calling crate needs `serde`: a table is serialized by
-/// field names and rejects unknown ones.
+/// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::MAX). The calling crate must depend on
+/// `serde`: a table is serialized by field names, and unknown names are rejected.
 ///
 /// ```
 /// parameters::parameter_table! {
@@ -46,10 +46,10 @@ macro_rules! parameter_table {
         }
 
         impl $name {
-            /// The values that the papers give or allow.
+            /// The initial values of all parameters. The papers print these values or allow them.
             $vis const PAPERS: Self = Self { $($field: $value,)* };
 
-            /// Unit, provenance, range and source of each number, in the order of the fields.
+            /// Unit, provenance, range and source of each parameter, in the order of the fields.
             $vis const INFOS: &'static [$crate::ParameterInfo] = &[$($crate::ParameterInfo {
                 name: stringify!($field),
                 unit: $unit,
@@ -111,7 +111,7 @@ macro_rules! parameter_table {
     };
 }
 
-/// Types and values of fields: whole numbers, or real numbers if the line says `f64`.
+/// Expands to the type or value of a field: a whole number, or a real number if the declaration says `f64`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! number {

@@ -1,8 +1,7 @@
-//! Search for the most similar name, for error messages.
+//! Search for the name that is most similar to an unknown name, for error messages.
 
-/// Returns the candidate that begins with `name`, such as a number of the table `name`, or else the one with the fewest
-/// single-letter changes.
-/// Returns `None` without candidates.
+/// Returns the candidate that begins with `name`, for example a parameter of the table `name`. Otherwise returns the
+/// candidate that differs from `name` by the fewest single-letter changes. Returns `None` if there are no candidates.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates.min_by_key(|candidate| (!candidate.starts_with(name), strsim::levenshtein(name, candidate)))

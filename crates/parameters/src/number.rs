@@ -1,17 +1,17 @@
-//! Types of numbers in code, and the check against limits.
+//! Types of parameter values in code, and the check of a value against its limits.
 
 use crate::{ParameterError, Value};
 
-/// A type that a field of a table can have.
+/// A number type that a field of a table can have: `u64` or `f64`.
 pub trait Number: Copy + Into<Value> {
-    /// Converts a value to this type; `None` if a whole number is required and the value is not whole.
+    /// Converts a value to this type. Returns `None` if the type is a whole number and the value is not whole.
     fn from_value(value: Value) -> Option<Self>;
 
-    /// Assigns a value to the field `name`.
+    /// Sets the field called `name` to a value.
     ///
     /// # Errors
     ///
-    /// [`ParameterError::NotWhole`] if a whole number is required and the value is not whole.
+    /// [`ParameterError::NotWhole`] if the field needs a whole number and the value is not whole.
     fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
         *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
         Ok(())
@@ -30,7 +30,8 @@ impl Number for f64 {
     }
 }
 
-/// Checks a number that is in no table, or whose limits depend on other numbers, as a table checks its own numbers.
+/// Checks a number against its limits. Use this function for a number outside all tables, or for limits that depend on
+/// other numbers.
 ///
 /// # Errors
 ///
@@ -39,7 +40,8 @@ pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<
     check_value(name, found.into(), (limits.0.into(), limits.1.into()))
 }
 
-/// Checks a [`Value`] against its limits. With constant limits this takes two comparisons.
+/// Checks a [`Value`] against its smallest and largest allowed value. If the limits are constants, the check compiles
+/// to two comparisons.
 #[doc(hidden)]
 #[inline]
 pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {

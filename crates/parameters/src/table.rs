@@ -1,25 +1,25 @@
-//! Access to tables by name, without their types.
+//! Access to the parameters of a table by name, for any table type.
 
 use crate::{ParameterError, ParameterInfo, Value};
 
-/// A number of a table with its value.
+/// A parameter of a table together with its current value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Name, unit, provenance, range, limits and source.
+    /// Name, unit, provenance, range, limits and source of the parameter.
     pub info: &'static ParameterInfo,
-    /// Current value in the table.
+    /// Current value of the parameter in the table.
     pub value: Value,
 }
 
 impl Entry {
-    /// Returns true if the sources allow the value.
+    /// Returns true if the current value lies within the range that the sources allow.
     #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
         (low..=high).contains(&self.value)
     }
 
-    /// Returns true if the model can use the value.
+    /// Returns true if the current value lies within the limits in which the model works.
     #[must_use]
     pub fn is_within_limits(&self) -> bool {
         let (least, most) = self.info.limits;
@@ -27,10 +27,11 @@ impl Entry {
     }
 }
 
-/// A table made by [`parameter_table!`](crate::parameter_table). A machine can hold many as `&dyn ParameterTable`.
+/// A table made by [`parameter_table!`](crate::parameter_table). A machine can hold tables of different types as `&dyn
+/// ParameterTable`.
 pub trait ParameterTable {
-    /// Returns unit, provenance, range and source of each number, in order. The constant `INFOS` of the table's type
-    /// has the same contents.
+    /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The constant `INFOS`
+    /// of the table's type has the same contents.
     fn infos(&self) -> &'static [ParameterInfo];
 
     /// Returns the value of a parameter.
@@ -40,7 +41,7 @@ pub trait ParameterTable {
     /// [`ParameterError::Unknown`] if no parameter has this name.
     fn get(&self, name: &str) -> Result<Value, ParameterError>;
 
-    /// Changes a parameter without a check of range and limits: see [`ParameterTable::check`].
+    /// Changes the value of a parameter. Range and limits are not checked here: call [`ParameterTable::check`].
     ///
     /// # Errors
     ///
@@ -48,21 +49,21 @@ pub trait ParameterTable {
     /// numbers and the value is not whole.
     fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
 
-    /// Returns all numbers with their values, in order.
+    /// Returns all parameters with their current values, in the order of the fields.
     fn entries(&self) -> Vec<Entry> {
         self.infos().iter().filter_map(|info| Some(Entry { info, value: self.get(info.name).ok()? })).collect()
     }
 
-    /// Returns the numbers whose values no source allows, for example those that an experiment has changed.
+    /// Returns the parameters whose current values lie outside the ranges that the sources allow.
     fn out_of_range(&self) -> Vec<Entry> {
         self.entries().into_iter().filter(|entry| !entry.is_in_range()).collect()
     }
 
-    /// Checks every number against the limits of the model.
+    /// Checks the value of every parameter against the limits of the model.
     ///
     /// # Errors
     ///
-    /// [`ParameterError::OutOfLimits`] for the first number outside its limits.
+    /// [`ParameterError::OutOfLimits`] for the first parameter whose value is outside its limits.
     fn check(&self) -> Result<(), ParameterError> {
         for info in self.infos() {
             let value = self.get(info.name)?;

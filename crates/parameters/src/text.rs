@@ -1,10 +1,11 @@
-//! Text of files from users.
+//! Conversion of users' files to text.
 
-/// Returns the bytes of a file as text.
+/// Converts the bytes of a file to text.
 ///
 /// # Errors
 ///
-/// The line and the byte within it, both from 1, of the first byte that is not UTF-8.
+/// Returns a message if a byte is not UTF-8. The message gives the line of the byte and the position of the byte within
+/// the line, both counted from 1.
 pub fn text_of(bytes: &[u8]) -> Result<&str, String> {
     std::str::from_utf8(bytes).map_err(|error| {
         // Only the valid text before the error gives its line and place.

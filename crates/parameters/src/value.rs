@@ -1,25 +1,26 @@
-//! Values of numbers.
+//! Values of parameters.
 
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// A value of a table. Files and reports contain the bare number.
+/// The value of a parameter. Files and reports contain only the number, without the name of the variant.
 ///
-/// Two values are equal or ordered only if they are of the same kind. Real values compare in IEEE's total order, so
-/// that tables can be compared and NaN lies outside every range.
+/// A whole value never equals a real value, and the two have no order. Real values are compared in IEEE's total order.
+/// NaN therefore lies outside every range, and tables can be compared for equality.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// An exact number: a count, or a time in whole units.
+    /// An exact whole number: a count, or a time in whole units.
     Whole(u64),
     /// A measured number, such as an rms error.
     Real(f64),
 }
 
 impl Value {
-    /// Returns the value as an exact number; `None` if it has a fraction, a sign or more than 64 bits.
+    /// Returns the value as a whole number. Returns `None` if the value has a fraction, is negative or needs more than
+    /// 64 bits.
     #[must_use]
     pub fn whole(self) -> Option<u64> {
         match self {
@@ -28,7 +29,7 @@ impl Value {
         }
     }
 
-    /// Returns the value as a real number, rounded to nearest above 2^53.
+    /// Returns the value as a real number. Whole numbers above 2^53 are rounded to the nearest real number.
     #[must_use]
     pub fn real(self) -> f64 {
         match self {
@@ -94,8 +95,8 @@ impl From<f64> for Value {
     }
 }
 
-/// The greatest whole number that is useful to a model: 10^12. Sums and products of a few times, in nanoseconds or
-/// clocks, then fit into 64 bits.
+/// The greatest whole number for a limit: 10^12. A model can add and multiply a few such times, in nanoseconds or
+/// clocks, within 64 bits.
 pub const MAX: u64 = 1_000_000_000_000;
 
 #[cfg(test)]

@@ -1,37 +1,38 @@
-//! The instant for which a picture is drawn.
+//! The instant for which the view of a picture is predicted.
 
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The times at which the picture of one view is shown.
+/// The times at which the display shows the picture of one view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightTimes {
-    /// Tick of the display (retrace) from which the picture is shown.
+    /// Tick of the display's clock (retrace) from which on the picture is shown.
     pub tick: Time,
-    /// Time at which the first pixel lights.
+    /// Time at which the first pixel of the picture starts to shine.
     pub first: Time,
-    /// Time at which the last pixel lights for the last time.
+    /// Time at which the last pixel of the picture starts to shine for the last time.
     pub last: Time,
 }
 
-/// The instant of a [`LightTimes`] for which a view is predicted. All pipelines use the same one.
+/// The instant, within the time at which a picture is shown, for which the view is predicted. All pipelines use the
+/// same choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
-    /// Half-way between the first and the last pixel. This instant has the least error under a steady turn.
+    /// Half-way between the first and the last pixel. This instant gives the least error while the head turns steadily.
     #[default]
     Middle,
-    /// The time at which the first pixel lights.
+    /// The time at which the first pixel of the picture starts to shine.
     FirstPixel,
-    /// The time at which the last pixel lights.
+    /// The time at which the last pixel of the picture starts to shine.
     LastPixel,
-    /// The retrace (the display's tick) from which the picture is shown.
+    /// The tick of the display's clock (retrace) from which on the picture is shown.
     Retrace,
 }
 
 impl Aim {
-    /// All instants with their names on the command line.
+    /// All choices, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] = [
         ("middle", Self::Middle),
         ("first-pixel", Self::FirstPixel),
@@ -39,7 +40,7 @@ impl Aim {
         ("retrace", Self::Retrace),
     ];
 
-    /// Returns the instant for which a view is drawn, from the times at which it is shown.
+    /// Returns the instant for which a view is predicted. `shown` has the times at which the view's picture is shown.
     #[must_use]
     pub fn instant(self, shown: &LightTimes) -> Time {
         match self {

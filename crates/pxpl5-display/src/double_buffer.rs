@@ -1,17 +1,17 @@
-//! A double buffer of whole regions, for displays that swap at their ticks.
+//! A double buffer of whole regions, for displays that swap buffers at the begin of a period.
 
 use image::{Rgb, RgbImage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{Body, MAX_MESSAGE_WORDS, RegionId, RegionPixels, Word, read_swap_request};
 use std::collections::BTreeMap;
 
-/// A region, complete or not, with the messages that have arrived.
+/// A region of which at least one message has arrived.
 #[derive(Clone, Debug)]
 struct PartialRegion {
     pixels: RegionPixels,
-    /// Left, top, width and height on the surface.
+    /// Left, top, width and height of the region on the surface, in pixels.
     rectangle: [u32; 4],
-    /// Bit set of the messages that have arrived.
+    /// Bit set of the messages that have arrived. Bit `n` stands for message `n` of the region.
     arrived: u32,
     first_part_at: Time,
 }
@@ -24,19 +24,19 @@ impl PartialRegion {
 
 type Regions = BTreeMap<RegionId, PartialRegion>;
 
-/// Two buffers for one surface, of which one is shown.
+/// Two buffers for one surface. One of the buffers is shown.
 ///
-/// **Not modelled:** pixels that arrive while they are lit. A display that models them keeps the times of all messages,
-/// as the NTSC frame buffer does.
+/// **Not modelled:** pixels that arrive while the display lights them. A display that models such pixels must keep the
+/// arrival times of all messages, as the NTSC frame buffer does.
 #[derive(Clone, Debug)]
 pub struct DoubleBuffer {
     width: u32,
     height: u32,
     buffers: [Regions; 2],
     shown: u8,
-    /// Contents of the buffer that was shown before the last tick.
+    /// Contents of the buffer that was shown until the last tick of the display's clock.
     scanned: Regions,
-    /// Arrival time and buffer of the last swap request.
+    /// Arrival time of the last swap request, and the number of the requested buffer.
     requested: Option<(Time, u8)>,
     faults: u64,
     first_fault: Option<String>,
@@ -45,11 +45,11 @@ pub struct DoubleBuffer {
 /// The effect of a message on a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
 pub enum BufferReceipt {
-    /// The last message of a region. The time is the arrival of the region's first message.
+    /// The message was the last one of its region. The time is the arrival of the region's first message.
     Region(RegionPixels, Time),
-    /// Another message of a region, or a swap request.
+    /// The message was a swap request, or a message of a region that is still incomplete.
     Part,
-    /// A message that the buffer cannot use: see [`DoubleBuffer::faults`].
+    /// The buffer cannot use the message. [`DoubleBuffer::faults`] counts such messages.
     Fault,
 }
 
@@ -69,7 +69,7 @@ impl DoubleBuffer {
         }
     }
 
-    /// Handles a message that arrives at `now`.
+    /// Handles a message that arrives at time `now`.
     pub fn receive(&mut self, body: Body, now: Time) -> BufferReceipt {
         let receipt = match body {
             Body::Pixels(pixels) => self.receive_pixels(pixels, now),
@@ -83,7 +83,7 @@ impl DoubleBuffer {
         })
     }
 
-    /// Returns the number of messages that the buffer could not use, and the reason of the first.
+    /// Returns the number of messages that the buffer could not use, and the reason for the first one.
     #[must_use]
     pub fn faults(&self) -> (u64, Option<&str>) {
         (self.faults, self.first_fault.as_deref())
@@ -129,7 +129,8 @@ impl DoubleBuffer {
         Ok(BufferReceipt::Part)
     }
 
-    /// Shows the buffer requested before (not at) this tick and returns it, or returns `None` without a request.
+    /// Shows the buffer that was requested last, and returns its number. Returns `None` without a request. A request
+    /// that arrives exactly at `now`, the time of the tick, waits for the next tick.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
         // Keep the old picture, which was visible until this tick.
         self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
@@ -138,13 +139,15 @@ impl DoubleBuffer {
         Some(buffer)
     }
 
-    /// Returns the shown buffer, with all regions of which a message has arrived; black elsewhere.
+    /// Returns the picture in the shown buffer. Incomplete regions are included; the picture is black where no region
+    /// has arrived.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         self.picture_of(&self.buffers[usize::from(self.shown)])
     }
 
-    /// Returns the picture that was shown until the last tick, black where no region has arrived.
+    /// Returns the picture that was shown until the last tick of the display's clock. The picture is black where no
+    /// region has arrived.
     #[must_use]
     pub fn scanned_picture(&self) -> RgbImage {
         self.picture_of(&self.scanned)
@@ -191,7 +194,7 @@ mod tests {
         assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
     }
 
-    /// A picture whose pixels all have one colour.
+    /// A region's picture whose pixels all have one colour.
     #[derive(Debug)]
     struct Plain(Word);
 

@@ -1,54 +1,55 @@
-//! When and for how long the pixels of a surface are lit.
+//! Order and duration in which the pixels of a surface are lit.
 
 use pxpl5_sim::Span;
 use serde::Serialize;
 
-/// The order in which the pixels of a surface light within a period.
+/// The order in which the pixels of a surface start to shine within a period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scan {
-    /// Line by line from the top, each from the left: the beam of a tube.
+    /// Line by line from the top, and from left to right in each line, as the beam of a cathode-ray tube.
     #[default]
     Down,
-    /// Line by line from the bottom, each from the left.
+    /// Line by line from the bottom, and from left to right in each line.
     Up,
-    /// Column by column from the left, each from the top.
+    /// Column by column from the left, and from top to bottom in each column.
     Right,
-    /// Column by column from the right, each from the top.
+    /// Column by column from the right, and from top to bottom in each column.
     Left,
-    /// All at once.
+    /// All pixels start to shine at once.
     Global,
 }
 
-/// The light of a pixel after the instant at which it begins to shine.
+/// The brightness of a display's pixels over time: the order in which they start to shine, and for how long they shine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
-    /// The order of the pixels.
+    /// Order in which the pixels start to shine.
     pub scan: Scan,
-    /// Time for which a pixel is driven in a period; zero where it counts as an instant.
+    /// Time for which a pixel is driven in each period. Zero means that the pixel shines only for an instant.
     pub persistence: Span,
-    /// Time constant with which a pixel follows its drive, a first-order lag; zero where it follows at once.
+    /// Time constant of the first-order lag with which a pixel's brightness follows its drive. Zero means no lag.
     pub response: Span,
 }
 
 impl Light {
-    /// Returns the time from the begin of a pixel's light to its centre of gravity: half of the persistence and one time constant.
+    /// Returns the time from the instant at which a pixel starts to shine to the centre of gravity of its brightness.
+    /// This time is half of the persistence plus one time constant.
     #[must_use]
     pub const fn centre(&self) -> Span {
         Span(self.persistence.0 / 2 + self.response.0)
     }
 
-    /// Returns the length of an even light that is as wide as this one.
+    /// Returns the duration of a constant brightness whose variance over time equals that of this light.
     ///
-    /// The length is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. The variance of an even
-    /// light of length p is p^2 / 12, that of a first-order lag is r^2, and variances add.
+    /// The duration is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. A constant brightness
+    /// of duration p has the variance p^2 / 12, a first-order lag has the variance r^2, and variances add.
     #[must_use]
     pub fn width(&self) -> Span {
         let [persistence, response] = [self.persistence, self.response].map(|span| span.0 as f64);
         Span((persistence * persistence + 12.0 * response * response).sqrt().round() as u64)
     }
 
-    /// Returns true if a pixel's light counts as an instant.
+    /// Returns true if each pixel shines only for an instant.
     #[must_use]
     pub const fn is_instant(&self) -> bool {
         self.persistence.0 == 0 && self.response.0 == 0

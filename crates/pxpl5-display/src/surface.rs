@@ -1,4 +1,4 @@
-//! Surfaces of displays and their counters.
+//! The visible surfaces of displays, and the counters of displays.
 
 use pxpl5_wire::{Eye, REGION_SIZE, RegionGrid};
 use serde::Serialize;
@@ -6,18 +6,19 @@ use serde::Serialize;
 /// A visible picture of a display: an eye's picture, a face of a cube, or a slice of a volume.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Surface {
-    /// Short name, used in file names: `left`.
+    /// Short name of the surface for file names, such as `left`.
     pub label: &'static str,
-    /// Name in timelines and traces: `left frame buffer`.
+    /// Name of the surface in timelines and traces, such as `left frame buffer`.
     pub title: &'static str,
-    /// Number of visible pixels of a line.
+    /// Width of the surface in visible pixels.
     pub width: u32,
-    /// Number of visible lines.
+    /// Height of the surface in visible lines.
     pub height: u32,
 }
 
 impl Surface {
-    /// Returns the surfaces of `count` frame buffers of one size: a single picture, or two eyes.
+    /// Returns the surfaces of `count` frame buffers of the same size. One frame buffer shows a single picture, two
+    /// show the two eyes.
     #[must_use]
     pub fn of_frame_buffers(count: usize, width: u32, height: u32) -> Vec<Self> {
         let titles = if count == 1 { ["frame buffer"; 2] } else { ["left frame buffer", "right frame buffer"] };
@@ -25,19 +26,20 @@ impl Surface {
         eyes.map(|(eye, title)| Self { label: eye.name(), title, width, height }).collect()
     }
 
-    /// Returns the division of the whole surface into regions of a renderer's size.
+    /// Returns the grid of regions that covers the surface. Each region has the size of a renderer's pixel array.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         RegionGrid { width: self.width, height: self.height, region_width: REGION_SIZE, region_height: REGION_SIZE }
     }
 
-    /// Returns the letter for the surface in timelines: `L`.
+    /// Returns the letter that stands for the surface in timelines, such as `L`.
     #[must_use]
     pub fn letter(&self) -> char {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
 
-    /// Returns the name for legends without room for the title: `left eye` for an eye, else the label.
+    /// Returns the name of the surface for legends that have no room for the title. The name is `left eye` or `right
+    /// eye` for an eye, else the label.
     #[must_use]
     pub fn legend(&self) -> String {
         let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);
@@ -45,17 +47,17 @@ impl Surface {
     }
 }
 
-/// A counter of a display.
+/// A named count of events in a display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counter {
     /// Name of the counter in reports and sweeps.
     pub name: &'static str,
-    /// Value of the counter for the whole run.
+    /// Number of counted events in the whole run.
     pub count: u64,
 }
 
 impl Counter {
-    /// Name of the counter of lines that were overwritten before the display had shown them. Displays that show whole
-    /// buffers do not have it.
+    /// Name of the counter of overwritten lines: lines that new pixels replaced before the display had shown them.
+    /// Displays that show only whole buffers do not have this counter.
     pub const LINES_NEVER_SHOWN: &'static str = "lines never shown";
 }

@@ -1,4 +1,4 @@
-//! The frame buffer board: two buffers, the ring port and the scan.
+//! The frame buffer board: two pixel buffers, the ring port and the video scan.
 
 use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 type Out = Context<FrameBufferEvent, FrameBufferOutput>;
 
-/// A frame buffer board: two buffers of pixels, its port on the ring, and the scan.
+/// A frame buffer board: two pixel buffers, a port on the ring, and a video scan.
 #[derive(Clone, Debug)]
 pub struct FrameBuffer {
     node: NodeId,
@@ -22,9 +22,9 @@ pub struct FrameBuffer {
     fields_kept: usize,
     buffers: [Buffer; 2],
     displayed: u8,
-    /// Field that is being scanned.
+    /// Field that is being scanned, or `None` before the first retrace.
     scanning: Option<PeriodNumber>,
-    /// Swap requests that have not taken effect: time of arrival and buffer.
+    /// Swap requests that have not taken effect: the arrival time and the requested buffer of each.
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
@@ -32,11 +32,11 @@ pub struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// Makes a board at a port of the ring. Both buffers are black, and buffer 0 is displayed.
+    /// Makes a board at ring port `node`. Both buffers are black, and buffer 0 is displayed.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError`] names the number that is out of range.
+    /// [`FrameBufferConfigError`] names the parameter that is out of range.
     pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, FrameBufferConfigError> {
         config.check()?;
         Ok(Self {
@@ -54,7 +54,8 @@ impl FrameBuffer {
         })
     }
 
-    /// Handles an event: pixels from the ring, a swap request or a retrace. Impossible events are recorded as faults.
+    /// Handles an event: pixels from the ring, a swap request or a retrace. Events that cannot occur on the real board
+    /// are recorded as faults.
     pub fn handle(&mut self, event: FrameBufferEvent, context: &mut Out) {
         let done = match event {
             FrameBufferEvent::Pixels(pixels) => self.receive(&pixels, context),
@@ -72,38 +73,39 @@ impl FrameBuffer {
         self.node
     }
 
-    /// Returns the video signal, which computes the position of the beam.
+    /// Returns the video signal, which gives the position of the beam at any time.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
-    /// Returns the displayed buffer, 0 or 1.
+    /// Returns the number of the displayed buffer, 0 or 1.
     #[must_use]
     pub const fn displayed(&self) -> u8 {
         self.displayed
     }
 
-    /// Returns the field that is being scanned; `None` before the first retrace.
+    /// Returns the field that is being scanned, or `None` before the first retrace.
     #[must_use]
     pub const fn scanning(&self) -> Option<PeriodNumber> {
         self.scanning
     }
 
-    /// Returns a field as it was scanned; `None` before its end, and after the board has forgotten it.
+    /// Returns a field as it was scanned. Returns `None` before the end of the field, and after the board has discarded
+    /// it.
     #[must_use]
     pub fn seen(&self, field: PeriodNumber) -> Option<ScannedField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
-    /// Returns the field that was scanned last; `None` before the end of the first field.
+    /// Returns the field that was scanned last, or `None` before the end of the first field.
     #[must_use]
     pub fn last_seen(&self) -> Option<ScannedField> {
         self.seen.back().cloned()
     }
 
-    /// Returns the current field as scanned up to `now`. Pixels that arrive later are not in it. `None` before the
-    /// first retrace.
+    /// Returns the current field as scanned up to `now`. Pixels that arrive after `now` are not included. Returns
+    /// `None` before the first retrace.
     #[must_use]
     pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
@@ -111,20 +113,21 @@ impl FrameBuffer {
         Some(ScannedField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
     }
 
-    /// Returns the contents of the displayed buffer, with all pixels that have arrived.
+    /// Returns the contents of the displayed buffer, with all pixels that have arrived so far.
     #[must_use]
     pub fn displayed_frame(&self) -> BufferContents {
         BufferContents { video: self.video, regions: self.buffers[usize::from(self.displayed)].regions() }
     }
 
-    /// Returns the contents of a buffer, 0 or 1, with all pixels that have arrived; `None` for other numbers.
+    /// Returns the contents of buffer 0 or 1, with all pixels that have arrived so far. Returns `None` for other
+    /// numbers.
     #[must_use]
     pub fn buffer(&self, buffer: u8) -> Option<BufferContents> {
         let regions = self.buffers.get(usize::from(buffer))?.regions();
         Some(BufferContents { video: self.video, regions })
     }
 
-    /// Returns the counts of fields, messages, regions and swaps.
+    /// Returns the board's counts of fields, messages, regions and swaps.
     #[must_use]
     pub const fn stats(&self) -> &FrameBufferStats {
         &self.stats
@@ -221,7 +224,7 @@ impl FrameBuffer {
     }
 }
 
-/// Returns the index of the region that a message belongs to. The first message of a region adds it.
+/// Returns the index of the region to which a message belongs. The first message of a region adds the region.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;
@@ -236,7 +239,7 @@ fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result
     Err(unexpected_part(pixels))
 }
 
-/// Returns the fault of a message that has arrived before, or whose number its region does not have.
+/// Returns the fault of an unexpected message: its number does not exist in the region, or the message arrived before.
 const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
     FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

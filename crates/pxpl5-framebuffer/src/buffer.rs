@@ -1,4 +1,4 @@
-//! One of the two buffers of a board. A buffer keeps a region as long as one of its pixels can still be seen.
+//! One of the two pixel buffers of a board. A buffer keeps the data of a region until none of its pixels can be seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -8,22 +8,24 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Regions as a viewer gets them, oldest first.
+/// The regions in a buffer as they are passed to readers of pictures, oldest region first.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of kept regions above which the buffer searches for covered regions pixel by pixel.
+/// Number of kept regions above which the buffer searches, pixel by pixel, for regions that newer ones cover
+/// completely.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<StoredRegion>,
-    /// Shared copy of `held`; `None` after a change.
+    /// Copy of `held` that readers share, or `None` after `held` has changed.
     shared: Option<Regions>,
     search_above: usize,
-    /// Indices in `held` of the regions that are still arriving. There are few, because a port receives one region at a
-    /// time.
+    /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
+    /// at a time.
     arriving: Vec<usize>,
-    /// Index of the newest complete region of each cut (see [`cut`]). Older regions of the same cut are hidden.
+    /// Index of the newest complete region for each cut, the key returned by [`cut`]. Regions with the same cut fill
+    /// the same pixels, so the older ones are hidden.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -46,7 +48,7 @@ impl Buffer {
         }
     }
 
-    /// Returns the index of the arriving region with this target.
+    /// Returns the index of the region that is still arriving for this target, if any.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
@@ -61,19 +63,19 @@ impl Buffer {
         &self.held[place].region
     }
 
-    /// Returns a region for a change. A viewer keeps the state that it was given.
+    /// Returns a region for modification. Readers of pictures keep an unmodified copy.
     pub(crate) fn region_mut(&mut self, place: usize) -> &mut RegionWrite {
         self.shared = None;
         Arc::make_mut(&mut self.held[place].region)
     }
 
-    /// Records that a field is scanned from this buffer.
+    /// Records that field `field` shows this buffer.
     pub(crate) fn scan(&mut self, field: PeriodNumber) {
         self.scans.begin(field);
     }
 
-    /// Marks the region that a complete region hides. Returns the index of the older region if this one has overwritten
-    /// it.
+    /// Handles the completion of a region, which hides an older region with the same pixels. Returns the index of the
+    /// older region if its pixels were overwritten.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
@@ -87,14 +89,14 @@ impl Buffer {
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of a region that a newer region with the same pixels has overwritten before the beam
-    /// had shown all of them.
+    /// Returns the number of lines of region `older` that were never shown completely. Region `newer`, with the same
+    /// pixels, has overwritten these lines before the beam had shown all their pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Recomputes the indices of the arriving and the newest regions after regions were removed.
+    /// Recomputes the indices of the arriving and of the newest regions, because regions were removed.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();
@@ -117,7 +119,7 @@ impl Buffer {
         self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
-    /// Forgets regions that can no longer be seen.
+    /// Removes regions none of whose pixels can be seen any more.
     pub(crate) fn prune(&mut self, width: u32, height: u32) {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
@@ -131,10 +133,9 @@ impl Buffer {
         }
     }
 
-    /// Forgets regions whose every pixel is covered by newer ones. Regions of different cuts hide each other only in
-    /// parts, so pixels decide.
-    /// An arriving region is the newest one, because a port receives one region at a time, so no other region covers
-    /// it.
+    /// Removes regions whose pixels are all covered by newer regions. Regions with different borders can cover each
+    /// other in part, so the search compares single pixels. A region that is still arriving is the newest one, because
+    /// a port receives one region at a time. No other region covers it.
     fn forget_covered(&mut self, width: u32, height: u32) {
         // Go from the newest region to the oldest and mark the pixels of each.
         let mut covered = vec![false; (width * height) as usize];
@@ -158,7 +159,8 @@ fn regions_of(held: &[StoredRegion]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
-/// Returns lines, number and grid of a region as a key, its *cut*. Regions with the same cut fill the same pixels.
+/// Returns a key, the *cut*, made of the lines, number and grid of a region. Regions with the same cut fill the same
+/// pixels.
 fn cut(target: &CopyTarget) -> [u32; 6] {
     let lines = match target.lines {
         Lines::Frame => 2,

@@ -1,30 +1,30 @@
-//! Configuration of a frame buffer.
+//! Configuration of one frame buffer board.
 
 use crate::error::FrameBufferConfigError;
 use crate::timing::{PortTiming, VideoTiming};
 use parameters::{ParameterTable, check};
 
-/// Numbers of one frame buffer board.
+/// Parameters of one frame buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameBufferConfig {
     /// Timing of lines and pixels of the scan.
     pub video: VideoTiming,
-    /// Timing of the port to the ring.
+    /// Timing of the board's port on the ring.
     pub port: PortTiming,
-    /// Number of scanned fields that the board remembers, 1 to 1,000. An interlaced picture needs two.
+    /// Number of scanned fields that the board remembers, 1 to 1,000. An interlaced picture needs at least two.
     pub fields_kept: u64,
 }
 
 impl FrameBufferConfig {
-    /// The NTSC frame buffer of TR94, which remembers the last two fields.
+    /// The NTSC frame buffer of TR94. The board remembers the last two fields.
     pub const NTSC: Self = Self { video: VideoTiming::PAPERS, port: PortTiming::PAPERS, fields_kept: 2 };
 
-    /// Checks that a board can be built.
+    /// Checks that a board can be built from these parameters.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] with the name of the number, the expected range and the found value.
+    /// [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         self.video.check()?;
         self.port.check()?;

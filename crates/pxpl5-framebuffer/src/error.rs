@@ -1,4 +1,4 @@
-//! Errors of the configuration.
+//! Errors in the configuration of a frame buffer.
 
 use parameters::ParameterError;
 
@@ -6,10 +6,10 @@ use parameters::ParameterError;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameBufferConfigError {
-    /// A number is out of range.
+    /// A parameter of the configuration is out of range.
     #[error("frame buffer: {0}")]
     Number(#[from] ParameterError),
-    /// The period of a field, which follows from the pixel clock, does not fit into a time.
+    /// The period of a field does not fit into a 64-bit time. The pixel clock determines this period.
     #[error(
         "frame buffer: the period of a field is out of range; expected pixel_ps x frame_lines x line_pixels below 2^64"
     )]

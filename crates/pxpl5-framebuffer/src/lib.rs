@@ -1,4 +1,4 @@
-//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by numbers, each with two buffers.
+//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by parameters. Each has two buffers.
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
@@ -10,29 +10,29 @@
 //! # Behaviour
 //!
 //! 1. A region arrives as messages of 1,024 pixels (the last may be shorter), row by row. The port accepts every word
-//!    as it comes. The words of a message arrive one word time apart, the last one at the time of
-//!    [`FrameBufferEvent::Pixels`]. After the last message the region has arrived
-//!    ([`FrameBufferOutput::RegionArrived`]).
+//!    immediately. The words of a message arrive one word time apart. The last word arrives at the time of the event
+//!    [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
 //! 2. A target names buffer, region and lines. The rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of
 //!    the frame. Row `r` of a field picture is line `2 r` (even) or `2 r + 1` (odd).
 //! 3. At every retrace, and at no other time, the buffer requested last is displayed ([`FrameBufferOutput::Swapped`]).
-//!    A request that arrives at the instant of a retrace waits for the next one.
+//!    A request that arrives at the instant of a retrace waits for the next retrace.
 //! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the
-//!    contents of the buffer when the beam is there: the new value of a word that arrives at that instant, the old
-//!    value of a word that arrives later. A region that arrives too late is therefore seen torn, word by word.
+//!    contents of the buffer when the beam reaches the pixel. A word that arrives at this instant is shown; a word that
+//!    arrives later is not. If a region arrives too late, the viewer sees it torn, word by word.
 //!    [`ScannedField::late_regions`] lists such regions.
-//! 5. [`FrameBufferStats::lines_never_shown`] counts lines that another region of the same place overwrites before the
-//!    beam has shown all of them. Only regions of the same cut are compared.
+//! 5. [`FrameBufferStats::lines_never_shown`] counts lines that a newer region overwrites before the beam has shown all
+//!    of their pixels. Only regions that fill exactly the same pixels are compared.
 //! 6. Two boards scan in lock-step because the wiring gives both the same retraces.
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
 //!
 //! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for its pixels, so they can be
-//! computed later or in another thread. At each retrace the board forgets regions that can no longer be seen.
+//! computed later or in another thread. At each retrace the board discards regions that can no longer be seen.
 //!
 //! # Timing
 //!
-//! [`VideoTiming`] and [`PortTiming`] have all numbers. [`Video`] computes the exact instants, from time zero:
+//! [`VideoTiming`] and [`PortTiming`] list all timing parameters. [`Video`] computes the exact instants, from time
+//! zero:
 //!
 //! | instant | time |
 //! |---|---|
@@ -49,11 +49,11 @@
 //!
 //! - the colour encoder and its subcarrier, gamma and the phosphor
 //! - the 9 pre-equalising and synchronising lines, except for their time
-//! - two transfers at a time into one board (the port forbids them; if they overlap, the one that began last is on top)
+//! - two simultaneous transfers into one board (the port forbids them; if they overlap, the later one hides the other)
 //! - contention of scan and port for the video RAM
 //!
-//! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by numbers. It keeps whole
-//! pictures.
+//! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by parameters. A panel
+//! keeps whole pictures.
 //!
 //! Sources: TR94 (resolution, two buffers of two fields, two boards in lock-step), NTSC (field, line). The position of
 //! the blanking is assumed.

@@ -1,4 +1,4 @@
-//! The NTSC display: one frame buffer for each eye, in lock-step.
+//! The NTSC display: one frame buffer for each eye. All frame buffers scan in lock-step.
 
 use crate::{
     FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, ScannedField, Video,
@@ -12,9 +12,9 @@ use pxpl5_sim::{Context, Time};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
 
-/// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
+/// Frame buffers that share a sync generator: one for a single picture, or two for the eyes of a stereo pair.
 ///
-/// The display's clock ticks at every retrace, so its periods are fields. Its surfaces are the eyes.
+/// The display's clock ticks at every retrace, so its periods are fields. Each surface is the picture of one eye.
 #[derive(Debug)]
 pub struct NtscDisplay {
     video: Video,
@@ -25,19 +25,19 @@ pub struct NtscDisplay {
 }
 
 impl NtscDisplay {
-    /// Returns the video signal, which computes the positions of the beams.
+    /// Returns the video signal of the boards, which gives the position of the beam at any time.
     #[must_use]
     pub const fn video(&self) -> &Video {
         &self.video
     }
 
-    /// Returns the frame buffers: left, then right.
+    /// Returns the frame buffer boards, the left eye first.
     #[must_use]
     pub fn boards(&self) -> &[FrameBuffer] {
         &self.boards
     }
 
-    /// Handles an event on a board and passes on its outputs.
+    /// Handles an event on a board and passes the board's outputs to `context`.
     fn board_event(&mut self, board: usize, event: FrameBufferEvent, context: &mut DisplayContext) {
         self.boards[board].handle(event, self.context.at(context.now()));
         for (time, output) in self.context.drain_outputs() {
@@ -51,7 +51,7 @@ impl NtscDisplay {
     }
 }
 
-/// Converts an output of a board to an output of the display.
+/// Converts an output of board `board` to an output of the display.
 const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     match output {
         FrameBufferOutput::RegionArrived { target, first_part_at, last_part_at } => {
@@ -61,8 +61,8 @@ const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
     }
 }
 
-/// Converts a message to an event of a frame buffer. An invalid message becomes a request for a buffer that does not
-/// exist, which is counted as a fault.
+/// Converts a ring message to an event of a frame buffer. An invalid message becomes a request for a buffer number that
+/// does not exist, which the board counts as a fault.
 fn received(body: Body) -> FrameBufferEvent {
     match body {
         Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
@@ -164,10 +164,10 @@ impl Display for NtscDisplay {
     }
 }
 
-/// Returns the screen as a viewer sees it at `time`, which must lie in the last scanned field.
-/// Above the beam the screen shows the current field, below the beam the field two before it, and between their lines
-/// the field before it. Fields that are not in `fields` are black. A screen keeps each line until the beam comes again,
-/// because the model's phosphor does not fade.
+/// Returns the screen as a viewer sees it at `time`, which must lie in the field that was scanned last. Above the beam
+/// the screen shows the lines of the current field. Below the beam it shows the lines of the field two before the
+/// current one. Between these lines it shows the lines of the previous field. Fields that are missing from `fields` are
+/// black. A screen keeps each line until the beam comes again, because the model's phosphor does not fade.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
@@ -196,8 +196,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     screen
 }
 
-/// Returns the first number below `count` for which `has` is false, or `count`.
-/// `has` must be true for all numbers before it and false for all after it.
+/// Returns the first number below `count` for which `has` is false, or `count` if there is none. `has` must be true for
+/// all smaller numbers and false for all greater ones.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {
@@ -207,7 +207,7 @@ fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     low
 }
 
-/// Returns the scanned lines of the wanted field.
+/// Returns the picture of field `wanted`, with its scanned lines only, if the field is among `fields`.
 fn picture_of(fields: &[ScannedField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
     fields.iter().find(|field| Some(field.field()) == wanted).map(ScannedField::picture)
 }

@@ -1,4 +1,4 @@
-//! Pixels in memory.
+//! Pictures in memory, painted from regions.
 
 use crate::region::Segment;
 use image::RgbImage;
@@ -6,16 +6,17 @@ use pxpl5_wire::Word;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Flag of a pixel that is already written.
+/// Flag in a pixel that was already painted.
 const PUT: Word = 0xff00_0000;
 
-/// Pixels as words 0x00RRGGBB, row by row. A written pixel is not written again, because the newest region comes first.
+/// A picture of words 0x00RRGGBB, row by row. A painted pixel is never painted again, because the newest region is
+/// painted first.
 pub(crate) struct Canvas {
     width: u32,
     words: Vec<Word>,
 }
 
-/// A run of pixels in one row.
+/// Successive pixels in one row of a canvas.
 pub(crate) struct CanvasRow<'a>(&'a mut [Word]);
 
 impl Canvas {
@@ -24,7 +25,7 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// Returns `length` pixels of which the first is at [x, y]. The pixels must lie in the canvas.
+    /// Returns `length` pixels of a row. The first pixel is at [x, y]. All of them must lie in the canvas.
     pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
         CanvasRow(&mut self.words[begin..begin + length as usize])
@@ -42,7 +43,7 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Writes the pixels of a segment. The image is computed only if one of them is missing.
+    /// Paints the pixels of a segment. The image is computed only if at least one pixel is not painted yet.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
         // An image that is too short leaves the rest black.
         for (word, pixel) in self.missing(image, segment) {
@@ -50,7 +51,7 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Writes the pixels of a segment for which `chosen` returns true.
+    /// Paints those pixels of a segment for which `chosen` returns true.
     pub(crate) fn put_chosen(
         self,
         image: &impl Deref<Target = Arc<[Word]>>,
@@ -64,7 +65,7 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Returns all pixels with those of the image, or none if all are written.
+    /// Returns all pixels together with the pixels of the image, or nothing if all pixels are already painted.
     fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
         self,
         image: &'a I,

@@ -7,32 +7,35 @@ use thiserror::Error;
 /// An event of a frame buffer.
 #[derive(Clone, Debug)]
 pub enum FrameBufferEvent {
-    /// The last word of a message of pixels has arrived. Phase `Arrive`.
+    /// The last word of a message of pixels has arrived. The event belongs to phase `Arrive` of the event queue.
     Pixels(RegionPixels),
-    /// Software requests that buffer 0 or 1 is displayed from the next retrace on. Phase `Arrive`.
+    /// Software requests that buffer 0 or 1 be displayed from the next retrace on. The event belongs to phase `Arrive`
+    /// of the event queue.
     SwapRequested {
         /// Requested buffer, 0 or 1.
         buffer: u8,
     },
-    /// The sync generator starts a field, at exactly [`Video::retrace`](crate::Video::retrace). Phase `Arrive`.
+    /// The sync generator starts a field, exactly at [`Video::retrace`](crate::Video::retrace). The event belongs to
+    /// phase `Arrive` of the event queue.
     ///
-    /// The last swap request that arrived before (not at) this instant takes effect.
+    /// The last swap request that arrived before this instant takes effect. A request at this instant waits for the
+    /// next retrace.
     Retrace {
         /// Field that begins.
         field: PeriodNumber,
     },
 }
 
-/// An output of a frame buffer, one word time after the event that caused it.
+/// An output of a frame buffer. The output occurs one word time after the event that caused it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameBufferOutput {
-    /// All messages of a region have arrived.
+    /// All messages of a region's pixels have arrived.
     RegionArrived {
-        /// Target of the region.
+        /// Destination of the region's pixels: the frame buffer, the region and the picture.
         target: CopyTarget,
-        /// Arrival time of the first message.
+        /// Arrival time of the region's first message.
         first_part_at: Time,
-        /// Arrival time of the last message.
+        /// Arrival time of the region's last message.
         last_part_at: Time,
     },
     /// A requested swap has taken effect, at the retrace that began `field`.

@@ -1,4 +1,4 @@
-//! A region during and after its arrival in a buffer.
+//! A region in a buffer, during and after its arrival.
 
 use crate::FrameBufferFault;
 use crate::video::{Video, frame_line, rectangle};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 const MAX_PARTS: usize = (REGION_SIZE * REGION_SIZE).div_ceil(MAX_MESSAGE_WORDS) as usize;
 const NEVER: Time = Time(u64::MAX);
 
-/// A region with the arrival time of each of its messages.
+/// A region of pixels with the arrival time of each of its messages.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionWrite {
     pub(crate) target: CopyTarget,
@@ -21,25 +21,25 @@ pub(crate) struct RegionWrite {
     arrived: [Time; MAX_PARTS],
 }
 
-/// Pixels of one line of a region that came in one message.
+/// The pixels of one line of a region that came in the same message.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
-    /// Line of the frame.
+    /// Line of the frame that contains the pixels.
     pub(crate) y: u32,
-    /// Column of the first pixel.
+    /// Column of the first pixel of the segment.
     pub(crate) x: u32,
-    /// Number of pixels.
+    /// Number of pixels in the segment.
     pub(crate) length: u32,
     /// Index of the first pixel in the region's image.
     pub(crate) index: u32,
-    /// Arrival time of the first pixel's word.
+    /// Arrival time of the word with the first pixel.
     first_at: Time,
-    /// Arrival time of the message's last word.
+    /// Arrival time of the last word of the segment's message.
     pub(crate) message_at: Time,
 }
 
 impl Segment {
-    /// Returns the arrival time of the word of the `i`-th pixel.
+    /// Returns the arrival time of the word with pixel `i` of the segment.
     pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
         self.first_at + word * u64::from(i)
     }
@@ -50,7 +50,7 @@ impl Segment {
 }
 
 impl RegionWrite {
-    /// Makes a region without any arrived message.
+    /// Makes a region none of whose messages has arrived.
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
@@ -72,7 +72,7 @@ impl RegionWrite {
         })
     }
 
-    /// Returns true if message `part` exists and has not arrived.
+    /// Returns true if message `part` belongs to the region and has not arrived yet.
     pub(crate) fn lacks(&self, part: u32) -> bool {
         part < self.parts && self.arrived[part as usize] == NEVER
     }
@@ -86,24 +86,24 @@ impl RegionWrite {
         self.n_arrived == self.parts
     }
 
-    /// Returns the arrival time of the first message, or `NEVER` if none has arrived.
+    /// Returns the arrival time of the region's first message, or `NEVER` if no message has arrived.
     pub(crate) fn first_at(&self) -> Time {
         self.arrived.iter().copied().min().unwrap_or(NEVER)
     }
 
-    /// Returns the arrival time of the last message; `None` while one is missing.
+    /// Returns the arrival time of the region's last message, or `None` while a message is missing.
     pub(crate) fn last_at(&self) -> Option<Time> {
         let arrived = &self.arrived[..self.parts as usize];
         self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
-    /// Returns the pixels that have arrived, line by line. A line is split where one message ends and the next begins.
+    /// Iterates over the pixels that have arrived, line by line. A line that comes in two messages is split.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
     }
 
-    /// Returns the segments of one row, including segments that have not arrived.
+    /// Iterates over the segments of one row of the region. Segments that have not arrived are included.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;

@@ -9,8 +9,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. Its pixels are computed when they are read. A field is cheap to clone and independent
-/// of later events.
+/// One field as it was scanned. Its pixels are computed when they are read. A clone is cheap, and later events do not
+/// change the field.
 #[derive(Clone, Debug)]
 pub struct ScannedField {
     pub(crate) field: PeriodNumber,
@@ -21,20 +21,20 @@ pub struct ScannedField {
     pub(crate) regions: Regions,
 }
 
-/// A region of which some pixels were scanned before they had arrived, so that older pixels are seen in their place.
-/// The board does not know for which field the region was meant. Compare `target.picture` to find out.
+/// A region that arrived too late: some pixels were scanned before they had arrived, so older pixels are seen instead.
+/// The board does not know the field for which the region was meant. Compare `target.picture` to find out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScannedLateRegion {
-    /// Target of the region, with its picture.
+    /// Frame buffer and region of the pixels, and number of the picture to which the region belongs.
     pub target: CopyTarget,
-    /// Arrival time of the last message; `None` if it did not arrive before the end of the field.
+    /// Arrival time of the region's last message, or `None` if that message arrived after the end of the field.
     pub arrived_at: Option<Time>,
-    /// First line of the frame with an older pixel.
+    /// First line of the frame in which an older pixel is seen.
     pub first_line: u32,
-    /// Number of lines with an older pixel in this field.
+    /// Number of lines of this field in which an older pixel is seen.
     pub lines: u32,
-    /// Longest time between the scan of a pixel and its arrival. For a pixel whose message did not end in this field,
-    /// the time to the field's end counts.
+    /// Longest time from the scan of a pixel to the arrival of the pixel. If the pixel's message did not end in this
+    /// field, the time from the scan to the end of the field is used.
     pub lateness: Span,
 }
 
@@ -51,13 +51,14 @@ impl ScannedField {
         self.buffer
     }
 
-    /// Returns the parity of the scanned lines of the frame.
+    /// Returns the parity of the scanned lines: even or odd lines of the frame.
     #[must_use]
     pub const fn parity(&self) -> FieldParity {
         FieldParity::of_field(self.field)
     }
 
-    /// Returns the scanned lines alone, black where no pixel was ever written: 640 x 240 for NTSC.
+    /// Returns a picture of only the scanned lines: 640 x 240 pixels for NTSC. Pixels that were never written are
+    /// black.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height() / 2);
@@ -65,8 +66,8 @@ impl ScannedField {
         canvas.into_image()
     }
 
-    /// Returns two fields interlaced, as on a screen: 640 x 480 for NTSC. If both have the same parity, the later one
-    /// is shown on a black frame.
+    /// Returns the picture of two fields interlaced, as on a screen: 640 x 480 pixels for NTSC. If both fields have the
+    /// same parity, the later field is shown on a black frame.
     #[must_use]
     pub fn interlaced_with(&self, other: &Self) -> RgbImage {
         let (earlier, later) = if self.field < other.field { (self, other) } else { (other, self) };
@@ -78,7 +79,7 @@ impl ScannedField {
         canvas.into_image()
     }
 
-    /// Returns the regions that came too late for this field, in order of their arrival.
+    /// Returns the regions that came too late for this field, in the order of their arrival.
     #[must_use]
     pub fn late_regions(&self) -> Vec<ScannedLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
@@ -90,7 +91,7 @@ impl ScannedField {
         begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
     }
 
-    /// Paints the regions, newest first, so that hidden regions are never computed.
+    /// Paints the regions into `canvas`, the newest region first. The pixels of hidden regions are thus never computed.
     fn paint(&self, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
@@ -114,10 +115,9 @@ impl ScannedField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// Returns the delay of a pixel's word after the beam; `None` if the field does not scan the pixel.
-    /// Words of a message that has not ended at the end of the field count as missing, because the board learns of
-    /// whole messages. On a ring that is faster than the beam, as the published one is, none of these words is in time
-    /// anyway.
+    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel. If a
+    /// message has not ended at the end of the field, all its words count as missing, because the board learns only of
+    /// whole messages. On the published ring, which is faster than the beam, none of these words is in time anyway.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
         let has_come = segment.message_at < self.ends_at;
@@ -155,7 +155,7 @@ impl ScannedLateRegion {
     }
 }
 
-/// The contents of a whole buffer. The pixels are computed when they are read; cloning is cheap.
+/// The contents of a whole buffer. Its pixels are computed when they are read, and a clone is cheap.
 #[derive(Clone, Debug)]
 pub struct BufferContents {
     pub(crate) video: Video,
@@ -163,7 +163,8 @@ pub struct BufferContents {
 }
 
 impl BufferContents {
-    /// Returns both fields, with all messages that have arrived; black where no pixel was ever written.
+    /// Returns the picture of both fields, with all messages that have arrived so far. Pixels that were never written
+    /// are black.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height());

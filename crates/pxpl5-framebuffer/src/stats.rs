@@ -1,19 +1,18 @@
-//! Statistics of a frame buffer.
+//! Counts of events in a frame buffer.
 
 /// Counts of a frame buffer since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FrameBufferStats {
-    /// Number of fields whose scan has begun.
+    /// Number of fields whose scan has begun so far.
     pub fields: u64,
     /// Number of received messages of pixels.
     pub messages: u64,
-    /// Number of completely received regions.
+    /// Number of regions of which all messages were received.
     pub regions: u64,
     /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Number of lines of regions that were overwritten before the beam had shown them from the first pixel to the
-    /// last.
-    /// There are three causes: the newer region came too early, the older one came too late, or the buffer was shown
-    /// for one field only, which scans every second line.
+    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes: the
+    /// newer region came too early, the older region came too late, or the buffer was shown for only one field, which
+    /// scans every second line.
     pub lines_never_shown: u64,
 }

@@ -16,33 +16,34 @@ parameters::parameter_table! {
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
         /// Number of lines in a frame of two fields.
         frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
-        /// Number of visible pixels of a line.
+        /// Number of visible pixels in a line.
         visible_pixels: 640, "pixels", Published, 640..=640 in 1..=16_384, "TR94";
-        /// Number of visible lines of a field.
+        /// Number of visible lines in a field.
         visible_lines: 240, "lines", Published, 240..=240 in 1..=16_384, "TR94: 480 lines in two fields";
-        /// Number of blanked pixel periods before the visible ones of a line.
+        /// Number of blanked pixel periods at the start of a line, before its visible pixels.
         left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "all of the horizontal blanking comes first";
-        /// Number of blanked whole lines after a retrace. An odd field also has the remaining half line, so its first
-        /// line is scanned half a line later than in an even field.
+        /// Number of blanked whole lines after a retrace. In an odd field the remaining half line is blanked too. Its
+        /// first line is therefore scanned half a line later than the first line of an even field.
         top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "all of the vertical blanking comes first";
     }
 }
 
 parameters::parameter_table! {
-    /// Timing of the port to the ring.
+    /// Timing of the board's port on the ring.
     pub struct PortTiming {
-        /// Time of one word. The words of a message arrive this far apart, the last one with the message.
+        /// Time in which a ring port receives one word. The last word of a message arrives together with the message's
+        /// event.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
     }
 }
 
 impl VideoTiming {
-    /// Checks that a picture can be scanned with these numbers. Each number must lie within its limits, and visible
-    /// pixels and lines with their blanking must fit into a line and a field.
+    /// Checks that a picture can be scanned with these parameters. Each parameter must lie within its limits. The
+    /// visible pixels must fit into a line with their blanking, and the visible lines into a field with theirs.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] with the name of the number, the expected range and the found value.
+    /// [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;

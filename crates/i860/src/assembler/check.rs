@@ -1,21 +1,24 @@
-//! Assembler rules for single instructions and their neighbours. Code that breaks a rule has undefined results on the
+//! Assembler rules for instructions and their neighbours. A program that breaks a rule has undefined results on the
 //! real chip.
 //!
-//! * a pair is a floating-point instruction, then a core instruction
-//! * the halves of a pair do not write the same register and do not both set CC, and `bc.t` or `bnc.t` is not paired
-//!   with a compare
-//! * a delayed branch has no branch in its slot, and the slot of a `call` does not write r1
-//! * `bla` has two different registers
+//! * A pair is a floating-point instruction, then a core instruction.
+//! * The halves of a pair write different registers, and only one half sets CC. `bc.t` or `bnc.t` is not paired with a
+//! compare.
+//! * A delayed branch has no branch in its slot, and the slot of a `call` does not write r1.
+//! * `bla` has two different registers.
 //!
 //! Some working programs break three more rules ([`Rule`]). The assembler reports these as warnings:
 //!
-//! * a `d.` instruction has an address that is a multiple of 8 (other assemblers accept it in the second word of a pair
-//!   too)
-//! * a pipelined multiply does not have its first source as destination
-//! * no result is read from a pipe after a scalar operation has destroyed it (code that empties a pipe reads such
-//!   results and ignores them)
+//! * A `d.` instruction has an address that is a multiple of 8. Other assemblers also accept `d.` in the second word of
+//!   a
+//! pair.
+//! * A pipelined multiply does not have its first source as destination.
+//! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
+//!   a
+//! pipe read such results and ignore them.
 //!
-//! Pairs are followed in address order. The check does not follow jumps into the middle of dual-instruction code.
+//! The rules for pairs are checked in address order. The check does not follow jumps into the middle of
+//! dual-instruction code.
 
 use crate::decoded::float_mask;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Source};
@@ -28,16 +31,16 @@ type Located = (u32, usize, Instruction);
 /// A rule that some working programs break, so that the assembler only warns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
-    /// A `d.` instruction has an address that is a multiple of 8.
+    /// Rule: a `d.` instruction has an address that is a multiple of 8.
     Alignment,
-    /// A pipelined multiply does not have its first source as destination.
+    /// Rule: a pipelined multiply does not have its first source as destination.
     MultiplySource,
-    /// No result is read from a pipe after a scalar operation has destroyed it.
+    /// Rule: no result is read from a pipe after a scalar operation has destroyed the contents of the pipe.
     LostResult,
 }
 
 impl Rule {
-    /// All rules with the names that turn their warnings off.
+    /// All rules. The name of a rule turns the warnings of this rule off.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
@@ -48,7 +51,7 @@ impl Rule {
     }
 }
 
-/// Returns all broken rules that make a program wrong, as source line and reason.
+/// Returns all violations of rules that are errors. Each violation has the source line and the reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     // Rules of single instructions first, then of slots, then of pairs.
     let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
@@ -60,8 +63,8 @@ pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
     faults
 }
 
-/// Returns all broken rules that cause warnings, as source line, rule and reason. `labels` are the possible targets of
-/// jumps.
+/// Returns all violations of rules that are only warnings. Each violation has the source line, the rule and the reason.
+/// `labels` are the addresses to which the program may jump.
 pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Rule, String)> {
     let each = program.iter().flat_map(|(address, line, i)| {
         alone(*address, i).into_iter().map(|(rule, reason)| (*line, rule, reason.to_owned()))
@@ -70,13 +73,14 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
     each.chain(lost).collect()
 }
 
-/// Number of operations pushed into a pipe since the last scalar operation; `None` if the contents of the pipe are
-/// unknown.
+/// Number of operations that entered a pipe after the last scalar operation. `None` means that the contents of the pipe
+/// are unknown.
 #[derive(Clone, Copy, Default)]
 struct PipeFill(Option<usize>);
 
 impl PipeFill {
-    /// Returns true if a scalar operation has destroyed the result that leaves next from a pipe of this many stages.
+    /// Returns true if the next result that leaves the pipe was destroyed by a scalar operation. `stages` is the length
+    /// of the pipe.
     fn is_result_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
@@ -86,7 +90,7 @@ impl PipeFill {
     }
 }
 
-/// Effects of an instruction on the pipes of adder and multiplier, in this order.
+/// Effect of an instruction on the pipe of the adder, then on the pipe of the multiplier.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -122,8 +126,8 @@ impl PipeUse {
     }
 }
 
-/// Finds results read from a pipe after a scalar operation has destroyed them. Labels and branches end the analysis of
-/// a straight run.
+/// Finds results that are read from a pipe after a scalar operation has destroyed them. The contents of the pipes are
+/// unknown after each label and branch.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [PipeFill::default(); 2];
@@ -186,7 +190,8 @@ fn slot(two: &[Located]) -> Option<(usize, String)> {
     }
 }
 
-/// Returns the registers that an instruction writes: r in the low word, f in the high word.
+/// Returns the mask of the registers that an instruction writes: integer registers in the low word, floating-point
+/// registers in the high word.
 fn writes(i: &Instruction) -> u64 {
     let base = if i.has(Flags::AUTOINCREMENT) { integer_mask(i.src2) } else { 0 };
     match i.op {
@@ -203,17 +208,18 @@ fn writes(i: &Instruction) -> u64 {
     }
 }
 
-/// Returns the mask of floating-point registers without f0 and f1, which cannot be written.
+/// Returns the mask of the floating-point registers of a destination. f0 and f1 are left out, because they cannot be
+/// written.
 fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// Returns the mask of an integer register, empty for r0, which cannot be written.
+/// Returns the mask of an integer register. The mask of r0 is empty, because r0 cannot be written.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }
 
-/// Follows dual-instruction mode through the program and checks every pair.
+/// Checks every pair of the program, in the order in which dual-instruction mode reaches the pairs.
 fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut mode = Mode::Single;
@@ -250,7 +256,7 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// Returns the broken rule of a pair, and true if the error belongs to the second half.
+/// Returns the rule that a pair breaks. The boolean is true if the second half causes the error.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

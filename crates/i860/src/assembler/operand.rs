@@ -1,10 +1,10 @@
-//! Conversion of operand texts to instruction fields.
+//! Conversion of the text of operands to the fields of instructions.
 
 use super::expression::{Symbols, evaluate};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
-/// Splits a text at commas outside parentheses.
+/// Splits a text at its commas, except commas inside parentheses.
 pub(super) fn split(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let mut depth = 0i32;
@@ -47,7 +47,7 @@ fn need_integer(text: &str) -> Result<u8, String> {
     integer_register(text).ok_or_else(|| format!("expected an integer register, found `{text}`"))
 }
 
-/// Parses a floating-point register for an operand of `bytes` bytes.
+/// Parses the name of a floating-point register that can hold an operand of `bytes` bytes.
 fn need_floating(text: &str, bytes: u8) -> Result<u8, String> {
     let n = register_number(text, 'f').ok_or_else(|| format!("expected a floating-point register, found `{text}`"))?;
     // A pair or quad must begin at a multiple of its length.
@@ -67,7 +67,7 @@ fn in_range(value: i64, least: i64, most: i64) -> Result<i32, String> {
     if (least..=most).contains(&value) { Ok(value as i32) } else { Err(format!("{value} is not in {least}..={most}")) }
 }
 
-/// Parses a signed 16-bit value. A low half (`l%`) is sign-extended.
+/// Parses a signed 16-bit constant. If the text is a low half (`l%`), bit 15 is the sign.
 fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     let value = evaluate(text, symbols)?;
     if text.trim_start().starts_with("l%") {
@@ -76,7 +76,7 @@ fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     in_range(value, -0x8000, 0x7FFF)
 }
 
-/// An instruction whose fields are being filled from operand texts.
+/// An instruction under construction. Its fields are filled from the texts of the operands.
 pub(super) struct Filler<'a> {
     pub(super) i: Instruction,
     pub(super) pc: u32,
@@ -84,7 +84,7 @@ pub(super) struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Fills the fields from the operands.
+    /// Fills the fields of the instruction from the texts of the operands.
     pub(super) fn fill(mut self, operands: &[&str]) -> Result<Instruction, String> {
         // The operation decides the operands and their order.
         match (Syntax::from_op(self.i.op), operands) {
@@ -201,7 +201,7 @@ impl Filler<'_> {
         Ok(())
     }
 
-    /// Converts a branch target to a word offset of `bits` bits.
+    /// Converts the text of a branch target to an offset in words that fits `bits` bits.
     fn offset(&self, target: &str, bits: u32) -> Result<i32, String> {
         let address = evaluate(target, self.symbols)? as u32;
         // Offsets count words from the instruction after the branch.
@@ -225,7 +225,8 @@ impl Filler<'_> {
         Err(format!("expected displacement(register), found `{text}`"))
     }
 
-    /// Parses `register(base)` or `displacement(base)`, with `++` if the operation allows it.
+    /// Parses an address: `register(base)` or `displacement(base)`. The suffix `++` is accepted if the operation has
+    /// auto-increment.
     fn address(&mut self, text: &str) -> Result<(), String> {
         let (plain, increment) = match text.strip_suffix("++") {
             Some(rest) => (rest.trim_end(), true),
@@ -258,7 +259,7 @@ impl Filler<'_> {
         self.check_displacement()
     }
 
-    /// Checks that the low bits of a displacement are zero, because they encode the size.
+    /// Checks that the low bits of a displacement are zero. These bits of the instruction word encode the operand size.
     fn check_displacement(&self) -> Result<(), String> {
         let unit = match (self.i.op, self.i.size) {
             (Op::LdB | Op::StB, _) => 1,

@@ -1,31 +1,32 @@
-//! Expansion of a source to plain lines: removes comments, splits statements at `;`, expands macros and repetitions.
+//! Preprocessor of assembler sources: removes comments, splits lines at `;`, and expands macros and repetitions.
 
 use super::error::AssemblyError;
 use super::operand::split;
 use std::collections::BTreeMap;
 
-/// A line of source with the number that errors report.
+/// A line of expanded source text, with the line number for error messages.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
     pub(super) number: usize,
     pub(super) text: String,
 }
 
-/// Most lines of expanded macros and repetitions, including lines of skipped bodies. Assumed: a million repetitions of
-/// one line.
+/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The value is
+/// assumed; it allows a million repetitions of one line.
 const MOST_STEPS: usize = 1 << 21;
-/// Most bytes of expanded text. Assumed: four for each byte of the longest program.
+/// Greatest size of the expanded text, in bytes. The value is assumed: four bytes for each byte of the longest program.
 const MOST_TEXT: usize = 64 << 20;
 /// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// The remaining budget of macro expansion, and the source line that has used most of it.
+/// The remaining budget of lines and bytes for macro expansion. The source line with the greatest use is also recorded,
+/// for the error message.
 struct Budget {
     steps: usize,
     text: usize,
-    /// Source line that is being expanded, and the budget before it.
+    /// Line number that is being expanded, and the remaining budget when its expansion began.
     current: (usize, usize),
-    /// Earlier source line that has used most of the budget, and its use.
+    /// Line number of the earlier line with the greatest use of the budget, and the amount that it used.
     largest_user: (usize, usize),
 }
 
@@ -34,12 +35,12 @@ impl Budget {
         Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
-    /// Returns the remaining budget as one number, with steps scaled to bytes.
+    /// Returns the remaining budget as one number in bytes. The line budget is scaled to bytes.
     const fn left(&self) -> usize {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
 
-    /// Starts to count the budget that a new source line uses.
+    /// Starts to measure how much of the budget source line `line` uses.
     fn begin(&mut self, line: usize) {
         self.largest_user = self.largest_user();
         self.current = (line, self.left());
@@ -60,7 +61,7 @@ impl Budget {
     }
 }
 
-/// A source line and the description of its error.
+/// An error: the number of the source line, and a description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -83,7 +84,7 @@ struct Expander<'a> {
     budget: Budget,
 }
 
-/// Returns the statements of a line, separated by `;`. Text after `//` is a comment.
+/// Iterates over the statements of a line, which are separated by `;`. Text after `//` is a comment and is left out.
 fn statements(line: &str) -> impl Iterator<Item = &str> {
     let code = line.split("//").next().unwrap_or_default();
     code.split(';').map(str::trim).filter(|statement| !statement.is_empty())
@@ -132,7 +133,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Returns the number of lines up to the one that closes a block. Nested blocks belong to the block.
+    /// Returns the number of lines up to the line that closes a block, for example `.endm`. Nested blocks are included.
     fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {
@@ -214,8 +215,8 @@ impl Expander<'_> {
     }
 }
 
-/// Replaces `\name` by the argument and `\@` by a number unique to the call. Returns `None` if the line would exceed
-/// `most` bytes.
+/// Replaces `\name` by the argument of this name, and `\@` by a number unique to the macro call. Returns `None` if the
+/// line would exceed `most` bytes.
 fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str, most: usize) -> Option<String> {
     let mut result = String::new();
     let mut rest = text;
@@ -244,7 +245,7 @@ fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &st
     Some(result + rest).filter(|text| text.len() <= most)
 }
 
-/// Splits `label: rest`; the label is `None` if there is none.
+/// Splits `label: rest` into the label and the rest. The label is `None` if the text has no label.
 pub(super) fn split_label(text: &str) -> (Option<&str>, &str) {
     match text.split_once(':') {
         Some((label, rest)) if is_name(label.trim()) => (Some(label.trim()), rest.trim()),

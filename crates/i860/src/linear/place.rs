@@ -27,7 +27,7 @@ pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings
     Placer::new(operations, pool, settings).run()
 }
 
-/// The location of a value: not computed yet, in a pipe, or in registers.
+/// The location of a value: not computed yet, in a pipe, in registers, or no longer needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Nowhere,

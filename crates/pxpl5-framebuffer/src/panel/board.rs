@@ -1,4 +1,4 @@
-//! The boards of a panel: double-buffered pictures and the instants at which their pixels light.
+//! The boards of a panel: double-buffered pictures, and the times at which their pixels are lit.
 
 use super::PanelNumbers;
 use image::RgbImage;
@@ -9,9 +9,10 @@ use pxpl5_display::{
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Frame buffers and panels that share a sync generator, one for each picture that is drawn at a time.
+/// Frame buffer boards with panels that share a sync generator. There is one board for each picture that is drawn at
+/// the same time.
 ///
-/// A board writes regions into the buffer that is not shown, and swaps at the next retrace after a request.
+/// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///
 /// **Not modelled:** pixels that arrive while their line is scanned.
 #[derive(Debug)]
@@ -21,19 +22,20 @@ pub struct Panel {
     frame: Clock,
     nodes: Vec<NodeId>,
     surfaces: Vec<Surface>,
-    /// One board for each surface. Port n belongs to the board with number n modulo the number of boards.
+    /// One board for each surface. Port n belongs to the board with index n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
-    /// Boards of an interlaced panel as they were a period before. Their lines still stand between the new ones.
+    /// Boards of an interlaced panel in their state one period ago. Their lines are still visible between the new
+    /// lines.
     older: Vec<DoubleBuffer>,
     scans: u64,
 }
 
-/// Builds a panel of numbers that were checked. Of the ring ports, the first ones of all boards come first, then the
-/// second ones.
+/// Builds a panel from parameters that were already checked. The order of the ring ports is: the first ports of all
+/// boards, then the second ports of all boards, and so on.
 ///
 /// # Errors
 ///
-/// [`DisplayError`] if the ports do not divide among boards.
+/// [`DisplayError`] if the number of ports is not a multiple of the number of boards.
 pub(super) fn build(
     name: &'static str,
     numbers: PanelNumbers,
@@ -53,7 +55,7 @@ pub(super) fn build(
 }
 
 impl Panel {
-    /// Returns its numbers.
+    /// Returns the parameters of the panel.
     #[must_use]
     pub const fn numbers(&self) -> &PanelNumbers {
         &self.numbers
@@ -63,12 +65,12 @@ impl Panel {
         self.numbers.interlace == 1
     }
 
-    /// Returns the first line that a period lights, and the distance to the next one.
+    /// Returns the index of the first line that a period lights, and the distance between lit lines.
     const fn rows(&self, period: PeriodNumber) -> (u64, u64) {
         if self.is_interlaced() { (period.0 % 2, 2) } else { (0, 1) }
     }
 
-    /// Returns the place of a pixel in the order of the scan.
+    /// Returns the number of pixels that the scan lights before pixel (x, y).
     fn order(&self, x: u64, y: u64, rows: (u64, u64)) -> u64 {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
@@ -81,7 +83,7 @@ impl Panel {
         }
     }
 
-    /// Returns a picture in the colours of the panel: each primary keeps its highest bits.
+    /// Returns a picture in the colours that the panel can show: each primary colour keeps only its highest bits.
     fn in_its_colours(&self, mut picture: RgbImage) -> RgbImage {
         let bits = self.numbers.bits / 3;
         if bits < 8 {
@@ -91,7 +93,7 @@ impl Panel {
         picture
     }
 
-    /// Returns the times at which the corners of a surface light in a period.
+    /// Returns the times at which the corner pixels of a surface are lit in a period.
     fn corners(&self, surface: usize, period: PeriodNumber) -> impl Iterator<Item = Time> {
         let [right, low] = [self.numbers.width as u32 - 1, (self.numbers.height as u32).saturating_sub(2)];
         let bottom = self.numbers.height as u32 - 1;

@@ -1,6 +1,6 @@
-//! Displays that are described by numbers alone: size, rate, order of the scan, persistence.
+//! Displays that are described only by parameters: size, rate, order of the scan, persistence.
 //!
-//! Each preset is a table of its own, because its numbers have sources of their own. All presets share one display.
+//! Each preset has its own table, because its parameters have their own sources. All presets share one implementation.
 
 mod board;
 mod numbers;

@@ -1,50 +1,52 @@
-//! The numbers of a panel, whichever table they come from.
+//! The parameters that all kinds of panels share.
 
 use parameters::{ParameterTable, Value};
 use pxpl5_display::{DisplayError, Light, Scan};
 use pxpl5_sim::Span;
 use pxpl5_wire::REGION_SIZE;
 
-/// Regions of a picture that firmware can tell apart: the masks of `pxpl5-geometry` have as many bits.
+/// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;
 
-/// Microseconds of a second.
+/// Number of microseconds in a second.
 const US_PER_S: u64 = 1_000_000;
 
-/// The numbers of a display without NTSC timing. A table that leaves one out has its default.
+/// The parameters of a panel, a display without NTSC timing. A parameter that is missing from a table has a default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
-    /// Visible pixels of a line.
+    /// Width of the panel: visible pixels in each line.
     pub width: u64,
-    /// Visible lines.
+    /// Height of the panel: visible lines.
     pub height: u64,
-    /// Scans a second.
+    /// Number of scans of the panel per second.
     pub refresh_hz: u64,
-    /// 1 if a scan lights every second line only, 0 if it lights all of them.
+    /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
     pub interlace: u64,
-    /// 0 if pixels light one after the other, 1 if all light at once.
+    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
     pub scan: u64,
-    /// The way of a rolling scan: 0 down, 1 up, 2 right, 3 left.
+    /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
     pub direction: u64,
-    /// Thousandths of the period in which pixels light; at their end a global display lights.
+    /// Part of each period in which a rolling scan lights pixels, in thousandths of the period. A global scan lights
+    /// all pixels at the end of this part.
     pub active_permille: u64,
-    /// Time for which a pixel is driven, microseconds.
+    /// Time for which a pixel is driven in each scan, in microseconds.
     pub persistence_us: u64,
-    /// Time constant of a pixel, microseconds.
+    /// Time constant of the first-order lag of a pixel's brightness, in microseconds.
     pub response_us: u64,
-    /// Ports of a board on the ring.
+    /// Number of ring ports of one board.
     pub ports: u64,
-    /// Time of one word at a port, nanoseconds.
+    /// Time in which a ring port receives one word, in nanoseconds.
     pub word_ns: u64,
-    /// Bits of a pixel's colour, a third for each primary.
+    /// Number of bits of a pixel's colour. Each of the three primary colours has a third of the bits.
     pub bits: u64,
 }
 
 impl PanelNumbers {
-    /// Reads the numbers of a table.
+    /// Reads the parameters of a panel from a table.
     ///
-    /// A number that the table leaves out has its default: a rolling scan of every line from the top, which fills the
-    /// period. A pixel lights for an instant and has 24 bits. A board has one port of 20 million words a second.
+    /// A parameter that is missing from the table has its default. The default scan is rolling, shows every line from
+    /// the top, and fills the period. A pixel shines for an instant and has 24 bits. A board has one port that receives
+    /// 20 million words per second.
     #[must_use]
     pub fn of(table: &dyn ParameterTable) -> Self {
         let number = |name: &str, default: u64| match table.get(name) {
@@ -67,7 +69,7 @@ impl PanelNumbers {
         }
     }
 
-    /// Returns the light of its pixels.
+    /// Returns the order in which pixels are lit, and how long each pixel shines.
     #[must_use]
     pub const fn light(&self) -> Light {
         let scan = match (self.scan, self.direction) {
@@ -81,11 +83,11 @@ impl PanelNumbers {
         Light { scan, persistence, response }
     }
 
-    /// Checks the rules between numbers; `table` begins the names in messages.
+    /// Checks rules that relate several parameters. `table` is the prefix of parameter names in error messages.
     ///
     /// # Errors
     ///
-    /// [`DisplayError`] names the number, what was expected and what was found.
+    /// [`DisplayError`] names the parameter, the expected range and the found value.
     pub fn check(&self, table: &str) -> Result<(), DisplayError> {
         let wrong = |name: &str, expected: String, found: String| {
             Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
