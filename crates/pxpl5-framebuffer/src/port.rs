@@ -40,9 +40,9 @@ pub enum FrameBufferOutput {
     },
     /// A requested swap has taken effect, at the retrace that began `field`.
     Swapped {
-        /// Buffer that is displayed from now on.
+        /// Number of the buffer that is displayed from now on, 0 or 1.
         buffer: u8,
-        /// First field that is scanned from the buffer.
+        /// First field that is scanned from the newly displayed buffer.
         field: PeriodNumber,
     },
 }
@@ -56,10 +56,10 @@ pub enum FrameBufferFault {
     WrongBoard {
         /// Port of this board.
         expected: NodeId,
-        /// Port in the target of the pixels.
+        /// Frame buffer port that the sender of the pixels has named.
         found: NodeId,
     },
-    /// The requested buffer is neither 0 nor 1.
+    /// A swap request names a buffer that is neither 0 nor 1.
     #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
         /// Number of the requested buffer.
@@ -71,37 +71,37 @@ pub enum FrameBufferFault {
         target.region.0, target.grid, target.lines, frame[0], frame[1]
     )]
     Region {
-        /// Target of the pixels.
+        /// Frame buffer, region and picture for which the pixels were meant.
         target: CopyTarget,
         /// Width and height of the frame in pixels.
         frame: [u32; 2],
     },
-    /// The number of messages of a region does not fit its number of pixels.
+    /// The number of messages given by the sender does not match the number of pixels in the region.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
-        /// Target of the pixels.
+        /// Frame buffer, region and picture for which the pixels were meant.
         target: CopyTarget,
-        /// Number of messages that the region needs.
+        /// Number of messages that a region of this size needs.
         expected: u32,
         /// Number of messages according to the sender.
         found: u32,
     },
-    /// The message does not exist in its region, or has arrived already.
+    /// The number of the message does not exist in its region, or the same message has already arrived.
     #[error("message {found} of {parts} of region {} does not exist or has arrived already", target.region.0)]
     Part {
-        /// Target of the pixels.
+        /// Frame buffer, region and picture for which the pixels were meant.
         target: CopyTarget,
-        /// Number of the message within the region, from 0.
+        /// Number of the message within its region, counted from 0.
         found: u32,
-        /// Number of messages of the region.
+        /// Number of messages of which the region consists.
         parts: u32,
     },
-    /// A retrace came at another time than that of the video timing.
+    /// A retrace came at a time that differs from the video timing.
     #[error("retrace {field} expected at {expected}, found at {found}")]
     Retrace {
         /// Field that begins.
         field: PeriodNumber,
-        /// Time of the retrace by the video timing.
+        /// Time of the retrace according to the video timing.
         expected: Time,
         /// Time at which the retrace came.
         found: Time,

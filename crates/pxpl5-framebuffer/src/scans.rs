@@ -1,4 +1,4 @@
-//! Record of the fields scanned from a buffer, which tells which lines were shown before they were overwritten.
+//! Record of the fields that showed a buffer. The record tells which lines were shown before they were overwritten.
 
 use crate::region::RegionWrite;
 use crate::video::Video;
@@ -6,14 +6,15 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Number of remembered fields: the newest two of each parity. The very last field may not have reached a line.
+/// Number of remembered fields: the newest two of each parity. One of each parity is not enough, because the current
+/// field may not have reached a line yet.
 const REMEMBERED: usize = 4;
 
 /// The last fields that were scanned from a buffer, newest first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scans(VecDeque<PeriodNumber>);
 
-/// A complete region that another complete region with the same pixels has overwritten.
+/// A complete region whose pixels were overwritten by another complete region.
 pub(crate) struct Overwritten<'a> {
     pub(crate) older: &'a RegionWrite,
     pub(crate) newer: &'a RegionWrite,
@@ -27,8 +28,8 @@ impl Scans {
         self.0.push_front(field);
     }
 
-    /// Returns the number of lines of the older region that were overwritten before the beam had shown them from the
-    /// first pixel to the last.
+    /// Returns the number of lines of the older region that were never shown completely. The newer region has
+    /// overwritten them before the beam had shown all of their pixels.
     pub(crate) fn lines_never_shown(&self, pair: &Overwritten<'_>) -> u64 {
         if self.shows_all(pair) {
             return 0;
@@ -36,8 +37,9 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if a field has shown the outermost lines of the older region after its write and before the newer
-    /// write. Then it has also shown the lines between them, which need no check.
+    /// Returns true if one field has shown the whole older region. The test compares only the outermost lines: the
+    /// field must show them after the older write and before the newer write. All lines between them were then shown
+    /// too.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
@@ -64,21 +66,21 @@ impl Scans {
     }
 }
 
-/// Returns the time at which the beam passes a pixel in a field; `None` if the field does not scan the pixel.
+/// Returns the time at which the beam passes a pixel in a field, or `None` if the field does not scan the pixel.
 fn scan([x, y]: [u32; 2], field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Time> {
     pair.video.when(x, y, field)
 }
 
-/// Returns the first pixel of the first of two rows, and the last pixel of the last row.
+/// Iterates over two corners of a region: the first pixel of row `first` and the last pixel of row `last`.
 fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     let [first, last] = [first, last].map(|row| ends(region, row, Span::ZERO));
     let [first, last] = [first.map(|end| end.0).next(), last.map(|end| end.0).last()];
     first.into_iter().chain(last)
 }
 
-/// Returns the end pixels of each message's part of a row, with the arrival times of their words. The row is of a
-/// complete region.
-/// The words of a message and the beam both advance evenly, so the ends decide. Between two messages there is a pause.
+/// Iterates over the end pixels of each message's part of a row, with the arrival times of their words. The region must
+/// be complete. Both the words of a message and the beam advance evenly, so only the end pixels need a check. Between
+/// two messages there is a pause.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

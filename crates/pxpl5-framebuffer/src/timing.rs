@@ -1,16 +1,16 @@
-//! Every number of the frame buffer.
+//! All timing parameters of the frame buffer.
 
 use crate::error::FrameBufferConfigError;
 use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
 
 parameters::parameter_table! {
-    /// Timing of NTSC video. All times follow from one pixel clock: a line has 780 of its periods (4004/63 us) and a
-    /// field 262.5 lines (1001/60000 s), both exactly.
+    /// Timing of NTSC video. All times follow from one pixel clock. A line has exactly 780 pixel periods (4004/63 us),
+    /// and a field exactly 262.5 lines (1001/60000 s).
     pub struct VideoTiming {
-        /// Period of the pixel clock, multiplied by `pixel_divisor`.
+        /// Period of the pixel clock, multiplied by the parameter `pixel_divisor`.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz = 12.2727 MHz, 640 in 52.15 us";
-        /// Divisor of the period of the pixel clock.
+        /// Divisor of `pixel_ps`; the quotient is the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
         /// Number of pixel periods in a line.
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";

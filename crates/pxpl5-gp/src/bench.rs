@@ -1,10 +1,10 @@
-//! A test bench with one board, for tests of programs.
+//! A test bench that runs the programs of a single board.
 
 use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board with its events in a [`TestBench`]. The test supplies the messages and acceptances of other boards.
+/// A board with its event queue. The test supplies the messages and acceptances that other boards would send.
 #[derive(Debug)]
 pub struct BoardBench {
     /// The board under test with its programs.
@@ -22,12 +22,13 @@ impl BoardBench {
         Self { board, bench, accepted: 0 }
     }
 
-    /// Schedules an event for the board at an instant, in phase `Arrive`.
+    /// Schedules an event for the board at time `at`, in phase `Arrive` of the event queue.
     pub fn feed(&mut self, at: Time, event: GpEvent) {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Accepts, at an instant, all messages that the board has sent and that were not accepted before.
+    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and that were not accepted
+    /// before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);
@@ -36,12 +37,12 @@ impl BoardBench {
         }
     }
 
-    /// Handles all events up to and including an instant.
+    /// Handles all events up to and including time `until`.
     pub fn run_until(&mut self, until: Time) {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// Returns the sent messages with the times at which they left the board, in order.
+    /// Iterates over the sent messages, each with the time at which it left the board, in order.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

@@ -1,4 +1,4 @@
-//! The graphics processor board: it polls its programs after each event that can end one of their waits.
+//! The graphics processor board. After each event that can end a wait, the board polls its programs.
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
@@ -20,7 +20,8 @@ use std::task::{Context as TaskContext, Poll, Waker};
 pub enum GpEvent {
     /// The last word of a message has arrived (phase `Arrive`).
     Delivered(Message),
-    /// A receiver has accepted a message of a batch (phase `Arrive`). The number is the ticket of [`GpOutput::Send`].
+    /// A receiver has accepted a message of a batch. The number is the ticket from [`GpOutput::Send`]. The event
+    /// belongs to phase `Arrive` of the event queue.
     Accepted(u64),
     /// A field begins (phase `Arrive`).
     Retrace(PeriodNumber),
@@ -31,43 +32,44 @@ pub enum GpEvent {
         /// New value of the line.
         value: u64,
     },
-    /// The programs run and read the arrivals of this instant.
+    /// The programs run and read the inputs that have arrived at this instant.
     Poll,
-    /// The running work may end now. An interrupt may have delayed the end to a later time.
+    /// The running work of the CPU may end at this instant. An interrupt may have delayed the end to a later time.
     WorkEnds,
 }
 
 /// Output of a graphics processor board.
 #[derive(Debug)]
 pub enum GpOutput {
-    /// A message for the ring. `ticket` comes back in [`GpEvent::Accepted`].
+    /// A message for the ring. After its acceptance, `ticket` comes back in [`GpEvent::Accepted`].
     Send {
         /// Message with its destination.
         message: Message,
-        /// Number of the batch, with the place of the message in the batch in the lower [`PLACE_BITS`].
+        /// Number of the batch, followed by the index of the message in the batch. The index is in the lower
+        /// [`PLACE_BITS`].
         ticket: u64,
         /// True if the receiver's port stays reserved for the next message.
         hold: bool,
     },
 }
 
-/// Number of bits of a ticket that hold the place of a message in its batch.
+/// Number of bits of a ticket that hold the index of a message in its batch.
 pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
-/// The time of a board's CPU by kind of work.
+/// The CPU time that a board has spent, by kind of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpUse {
-    /// All time that was spent.
+    /// CPU time of all kinds of work together.
     pub busy: Span,
-    /// The part of the software that receives and sends messages.
+    /// CPU time of the software that receives and sends messages.
     pub messages: Span,
     /// The part of the work that [answers](crate::Gp::answer) messages: bins that are handed over for a token.
     pub tokens: Span,
 }
 
 impl GpUse {
-    /// Returns the rest: what programs do besides messages and tokens, such as EDIT and TRANSFORM.
+    /// Returns the CPU time of all other work, such as EDIT and TRANSFORM: neither messages nor tokens.
     #[must_use]
     pub const fn work(&self) -> Span {
         Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
@@ -84,8 +86,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Instants at which a [`GpEvent::WorkEnds`] is scheduled: the next end of work, and ends that an interrupt has
-    /// delayed.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled: the next end of work, and earlier ends that an interrupt
+    /// has delayed.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -99,7 +101,7 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board at a port of the ring, without a program. `cycle` is the delay of every output of the board.
+    /// Makes a board without a program at a ring port. Each output leaves the board one `cycle` after its cause.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -131,9 +133,8 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: Vec::new(), poll_pending: false, cycle, fault: None }
     }
 
-    /// Takes the time of [`Work`](crate::Work) from i860 code on a core with this configuration, instead of the timing
-    /// table.
-    /// Boards with the same shelf share decoded programs and their clocks.
+    /// Makes the board run i860 code for each [`Work`](crate::Work) instead of using the timing table. `core`
+    /// configures the i860. Boards with the same `shelf` share decoded programs and their remembered clocks.
     pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
@@ -141,27 +142,27 @@ impl GpBoard {
         shared.processor = Some(Box::new(processor));
     }
 
-    /// Turns memoization of the processor off, so that every clock is counted. Must be called before programs run.
+    /// Turns memoization of the i860 off, so that every clock is counted again. Must be called before the first event.
     pub fn disable_memoization(&mut self) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.disable_memoization();
         }
     }
 
-    /// Returns a handle to the board for a program of a priority.
+    /// Returns a handle through which a program of this priority uses the board.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Loads a program. Each priority may have one program.
+    /// Loads a program with a CPU priority. Each priority can have only one program.
     pub fn load(&mut self, priority: Priority, firmware: Firmware) {
         self.shared.borrow_mut().waits[priority as usize] = Wait::NOT_STARTED;
         self.tasks.push(Task { firmware, priority, has_ended: false });
         self.tasks.sort_by_key(|task| task.priority);
     }
 
-    /// Handles one event at its instant.
+    /// Handles one event at the time of `context`.
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
@@ -210,7 +211,7 @@ impl GpBoard {
         self.announce(end, context);
     }
 
-    /// Polls the programs if work ends now. An interrupt may have delayed the end since the event was scheduled.
+    /// Polls the programs if the running work ends now. If an interrupt has delayed the end, the event has no effect.
     fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         let now = context.now();
         self.announced.retain(|at| *at > now);
@@ -227,9 +228,8 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs in turn until all of them wait for an event outside the board.
-    /// Each poll runs a program as far as possible, so another poll makes sense only after the other program has
-    /// progressed.
+    /// Polls the programs in turn until all of them wait for an event outside the board. Each poll runs a program as
+    /// far as possible. Another poll is useful only after progress of the board's other program.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
@@ -258,7 +258,7 @@ impl GpBoard {
         }
     }
 
-    /// Ends all programs if a fault of the board's own software has stopped the board. Returns true if it did.
+    /// Ends all programs if a fault in the board's own software has stopped the board. Returns true in this case.
     fn stop(&mut self) -> bool {
         let Some(fault) = self.shared.borrow_mut().software_fault.take() else { return false };
         self.fault.get_or_insert(fault);
@@ -266,13 +266,13 @@ impl GpBoard {
         true
     }
 
-    /// Returns the fault that stopped a program or the board.
+    /// Returns the fault that has stopped a program or the board, if any.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
 
-    /// Removes the marks that the programs have recorded and passes them to `take`, in order.
+    /// Removes the records of stages that the programs have made, and passes them to `take` in order.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -280,66 +280,67 @@ impl GpBoard {
         }
     }
 
-    /// Returns the CPU time spent so far.
+    /// Returns the CPU time that the board has spent so far.
     #[must_use]
     pub fn busy(&self) -> Span {
         self.shared.borrow().cpu.busy()
     }
 
-    /// Returns what the CPU's time went to, up to an instant that is not before the last event.
+    /// Returns the CPU time spent up to `now`, by kind of work. `now` must not be earlier than the last event.
     #[must_use]
     pub fn used(&self, now: Time) -> GpUse {
         let shared = self.shared.borrow();
         GpUse { busy: shared.cpu.busy_at(now), messages: shared.message_software, tokens: shared.answer_work }
     }
 
-    /// Returns the number of vertices that the programs have transformed
+    /// Returns the number of vertices that the programs have transformed so far
     /// ([`Work::vertex_transforms`](crate::Work::vertex_transforms)).
     #[must_use]
     pub fn vertex_transforms(&self) -> u64 {
         self.shared.borrow().vertex_transforms
     }
 
-    /// Returns the greatest number of memory bytes in use at any time so far.
+    /// Returns the greatest number of memory bytes that were in use at the same time.
     #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
         self.shared.borrow().memory.peak()
     }
 
-    /// Returns a snapshot of the board at an instant that is not before the last event. The board stays unchanged.
+    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last event. The board stays
+    /// unchanged.
     #[must_use]
     pub fn look(&self, now: Time) -> GpSnapshot {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Calls `look` with the processor, if the time of work comes from code.
+    /// Calls `look` with the i860 if the board runs i860 code. Returns `None` for other boards.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }
 
-    /// Sets the code addresses at which calls record [`BreakpointHit`]s ([`Processor::break_at`]). Without a processor
-    /// this does nothing.
+    /// Sets breakpoints: code addresses at which calls of i860 code record [`BreakpointHit`]s
+    /// ([`Processor::break_at`]). Boards without i860 code ignore the call.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.break_at(addresses.clone());
         }
     }
 
-    /// Returns and removes the breakpoint hits since the last call of this function.
+    /// Removes and returns the breakpoint hits recorded since the last call of this function.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the wait that blocks the board: the foreground's wait if the foreground waits, else the
-    /// interrupt's.
+    /// Returns the condition that the board waits for, for a deadlock report. The wait of the foreground program is
+    /// preferred to the wait of the interrupt program.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let waits_for = self.wait()?.what.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
     }
 
-    /// Returns true if the board waits for an event other than a retrace.
+    /// Returns true if the board waits for an event other than a retrace. Only another board can cause such an event.
     #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)

@@ -1,13 +1,13 @@
-//! CPU time of a board, shared by the programs of two priorities.
+//! CPU time of a board, shared by two programs of different priorities.
 
 use pxpl5_sim::{Span, Time};
 
 /// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// The interrupt program. The foreground stands still while it spends time.
+    /// The interrupt program. While it spends CPU time, the foreground program stands still.
     Interrupt,
-    /// The foreground program, which runs while the interrupt program spends no time.
+    /// The foreground program. It runs while the interrupt program spends no CPU time.
     Foreground,
 }
 
@@ -15,7 +15,7 @@ impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
-/// Remaining CPU time of the program of each priority, and the running program.
+/// The CPU of a board: the remaining CPU time of each program, and the program that is running.
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
@@ -31,7 +31,7 @@ impl Cpu {
         self.dispatch(now);
     }
 
-    /// Advances the accounts to `now`. Work that ends exactly at `now` is finished.
+    /// Charges the CPU time up to `now` to the running program. Work that ends exactly at `now` is finished.
     pub(crate) fn settle(&mut self, now: Time) {
         let Some((priority, since)) = self.running else {
             return;
@@ -49,18 +49,19 @@ impl Cpu {
         self.running = first.map(|priority| (priority, now));
     }
 
-    /// Returns true if the program of a priority has spent all its requested time.
+    /// Returns true if the program of a priority has spent all the CPU time that it has requested.
     pub(crate) fn is_done(&self, priority: Priority) -> bool {
         self.remaining[priority as usize].is_none()
     }
 
-    /// Returns the end of the running work without further interrupts.
+    /// Returns the time at which the running work ends if no interrupt comes. Returns `None` if no work is running.
     pub(crate) fn next_end(&self) -> Option<Time> {
         let (priority, since) = self.running?;
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// Returns the remaining work of a priority at an instant; `None` if it has none.
+    /// Returns the CPU time that the work of a priority still needs at time `now`. Returns `None` without unfinished
+    /// work.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
         match self.running {
@@ -73,7 +74,8 @@ impl Cpu {
         self.busy
     }
 
-    /// Returns the time spent up to an instant that is not before the last call of [`Cpu::settle`].
+    /// Returns the CPU time that all programs together have spent up to `now`. `now` must not be earlier than the last
+    /// call of [`Cpu::settle`].
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let Some((priority, since)) = self.running else { return self.busy };
         let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);

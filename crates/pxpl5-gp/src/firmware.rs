@@ -1,4 +1,4 @@
-//! The interface between a program and its board.
+//! The interface between a program (firmware) and its board.
 
 use crate::cpu::{Cpu, Priority};
 use crate::memory::{Account, Memory, OutOfMemory};
@@ -14,35 +14,34 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board, which ends only with a fault.
-/// A program must wait for one future at a time. If it polls several futures side by side, the board knows only the
-/// last wait.
+/// A program on a board. The program runs forever or ends with a fault. A program must wait for only one future at a
+/// time. If it polls several futures together, the board knows only the last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// Data did not fit into the board's memory.
+    /// Data did not fit into the memory of the board.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
-    /// A message that the program does not expect.
+    /// The program has received a message that it does not expect.
     #[error("node {}: unexpected message {found}", node.0)]
     Protocol {
         /// Port of the board that received the message.
         node: NodeId,
-        /// Description of the message.
+        /// Description of the unexpected message.
         found: String,
     },
-    /// i860 code trapped, did not end or had no memory.
+    /// i860 code has trapped, did not return, or lacked memory.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
 }
 
-/// A message, with the arrival time of its last word.
+/// A received message, with the arrival time of its last word.
 #[derive(Clone, Debug)]
 pub struct Received {
-    /// Arrival time of the last word.
+    /// Arrival time of the last word of the message.
     pub arrived: Time,
     /// Port of the sender.
     pub source: NodeId,
@@ -50,11 +49,11 @@ pub struct Received {
     pub body: Body,
 }
 
-/// The number of a batch of messages given to the DMA.
+/// The number of a batch of messages that a program has passed to the DMA.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
-/// A chain of messages that the DMA sends at once, after the previous chain was accepted.
+/// A chain of messages that the DMA sends together, after the receivers have accepted the previous chain.
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) ticket: Ticket,
@@ -65,7 +64,7 @@ pub(crate) struct Batch {
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
-    /// True if the receiver's port stays reserved for the next message.
+    /// True if the receiver's port stays reserved for the next message of this board.
     pub(crate) hold: bool,
 }
 
@@ -77,87 +76,89 @@ pub(crate) struct Shared {
     pub(crate) timing: GpTiming,
     pub(crate) cpu: Cpu,
     pub(crate) memory: Memory,
-    /// Processor that runs i860 code; `None` if times come from the timing table.
+    /// The i860 that runs code, or `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices transformed since the start.
     pub(crate) vertex_transforms: u64,
-    /// CPU time that the software of messages has asked for, and the work of answers to messages.
+    /// CPU time requested so far for the software of messages. The next field is the CPU time of work that answers
+    /// messages.
     pub(crate) message_software: Span,
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Messages of the current batch that were not accepted yet: their places in the batch and their receivers.
+    /// Messages of the current batch that are not accepted yet. Each entry has the message's index in the batch and its
+    /// receiver.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
-    /// Receivers that have not accepted any message of the current batch.
+    /// Receivers that have accepted no message of the current batch so far.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Marks for ends of stages that wait for the acceptance of a batch, in order.
+    /// Ends of stages that are recorded when a batch is accepted: the batch and the record, in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch of which every receiver has accepted a message, then number of the last completely
-    /// accepted batch.
+    /// Number of the last batch of which every receiver has accepted at least one message. The next field is the number
+    /// of the last completely accepted batch.
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of completed waits. The board polls its programs until this number stays the same.
+    /// Number of waits that have ended so far. The board polls its programs until this number stays the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
-    /// Fault of the board's own software, which stops all programs.
+    /// Fault in the board's own software. Such a fault stops all programs.
     pub(crate) software_fault: Option<Fault>,
 }
 
-/// A wait of a program: its name, and the cause that can end it.
+/// A condition that a program waits for: its name, and the kind of event that can end the wait.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wait {
     pub(crate) what: &'static str,
     pub(crate) ended_by: Cause,
 }
 
-/// A cause that can end a wait.
+/// A kind of event that can end the wait of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
-    /// The end of work on the board's CPU.
+    /// Work on the board's CPU has ended.
     Work,
-    /// The acceptance of a message by its receiver.
+    /// A receiver has accepted a message.
     Acceptance,
-    /// A message, a retrace, a status line, or progress of the board's other program.
+    /// A message, a retrace or a status line has arrived, or the board's other program has progressed.
     Arrival,
-    /// A retrace, which always comes.
+    /// A retrace. A retrace comes in every field, so a wait for it always ends.
     Retrace,
-    /// No cause: no program is loaded.
+    /// No event: the board has no program of this priority.
     Nothing,
 }
 
 impl Cause {
-    /// Returns true if `other` can end a wait that this cause ends.
+    /// Returns true if an event of kind `other` can end a wait for this kind of event.
     fn includes(self, other: Self) -> bool {
         self == other || (self == Self::Arrival && other == Self::Retrace)
     }
 }
 
 impl Wait {
-    /// The wait of a priority without a program.
+    /// The wait that stands for a missing program of a priority.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The wait of a program that has not run yet.
+    /// The wait that stands for a program that has not run yet.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
-    /// Returns true if a cause can end the wait of a program or of the DMA.
+    /// Returns true if an event of this kind can end the wait of a program or of the DMA.
     pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
     }
 
-    /// Returns true if a program waits for the end of work that is not finished.
+    /// Returns true if the program of a priority waits for the end of its unfinished CPU work.
     pub(crate) fn is_at_work(&self, priority: Priority) -> bool {
         self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
-    /// Adds a message to the inbox. Messages of one instant are sorted by sender, so that the order of their events
-    /// does not matter.
+    /// Adds a message to the inbox. Messages that arrive at the same instant are sorted by sender. The order in which
+    /// their events are handled then has no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
         // Insert after all messages of earlier instants and lower senders.
@@ -190,7 +191,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// Returns the next batch if the DMA is free, and records its receivers.
+    /// Returns the next batch of messages if the DMA is free. The receivers of the batch are recorded.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -209,7 +210,7 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board, with the priority of the program.
+/// A program's handle to its board. The handle knows the CPU priority of the program.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
@@ -217,7 +218,7 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// Returns a handle to the same board for a program of another priority.
+    /// Returns a handle to the same board for a program of another CPU priority.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
@@ -241,23 +242,24 @@ impl Gp {
         self.shared.borrow().timing
     }
 
-    /// Returns the current field of the first display: the period that began with the last retrace.
+    /// Returns the current field of the first display. The field began with the last retrace.
     #[must_use]
     pub fn field(&self) -> PeriodNumber {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line, for example the number of swaps of a frame buffer. The value
-    /// is zero before its first change.
+    /// Returns the value of another board's status line. For a frame buffer the value is the number of its swaps. The
+    /// value is zero before its first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
     }
 
-    /// Waits until `ready` returns a value. `what` names the wait in a report of a deadlock.
+    /// Waits until `ready` returns a value, and returns this value. `what` is the name of the wait in a deadlock
+    /// report.
     ///
-    /// The board calls `ready` again after a message, a retrace or a change of a status line, and after progress of
-    /// another program of this board. To wait for the acceptance of messages, use [`Gp::accepted`].
+    /// The board calls `ready` again after a message, a retrace or a change of a status line, and after progress of the
+    /// board's other program. To wait for the acceptance of messages, use [`Gp::accepted`].
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
     }
@@ -276,7 +278,7 @@ impl Gp {
         .await
     }
 
-    /// Spends CPU time at this program's priority.
+    /// Spends CPU time at the priority of this program.
     pub async fn spend(&self, span: Span) {
         if span == Span::ZERO {
             return;
@@ -294,20 +296,21 @@ impl Gp {
         self.field_from(self.field().next()).await
     }
 
-    /// Waits until the current field is `first` or a later one, and returns it.
+    /// Waits until the number of the current field is at least `first`, and returns the number.
     pub async fn field_from(&self, first: PeriodNumber) -> PeriodNumber {
         let wait = Wait { what: "a retrace", ended_by: Cause::Retrace };
         self.wait(wait, || Some(self.field()).filter(|field| *field >= first)).await
     }
 
-    /// Waits until the clump buffer is free, that is, until all earlier messages were accepted.
+    /// Waits until the clump buffer, the memory for outgoing messages, is free. The buffer is free when the receivers
+    /// have accepted all earlier messages.
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;
     }
 
-    /// Waits until every receiver of a batch has accepted at least one message, so that the clump buffer is being
-    /// emptied.
+    /// Waits until every receiver of a batch has accepted at least one message. From then on the clump buffer (the
+    /// memory for outgoing messages) is being emptied.
     pub async fn draining(&self, ticket: Ticket) {
         let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
@@ -319,7 +322,7 @@ impl Gp {
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
-    /// Sets the number of bytes that an account of the memory holds.
+    /// Sets the number of bytes of memory that are in use for a purpose, the account.
     ///
     /// # Errors
     ///
@@ -328,23 +331,24 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if `bytes` of bins of a context fit beside the bins that the other context holds now.
+    /// Returns true if the bins of a context can grow to `bytes` bytes of memory. The bins of the other context limit
+    /// the size.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Records the begin of a stage for the observer.
+    /// Records that a stage begins now, for observers of the run.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }
 
-    /// Records the end of a stage for the observer.
+    /// Records that a stage ends now, for observers of the run.
     pub fn end(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Records the end of a stage for the time at which a batch is accepted. The program continues at once.
+    /// Records that a stage ends at the later time at which a batch is accepted. The program continues at once.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -354,14 +358,14 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Records a begin or end of a stage at a time that the program has read from a message.
+    /// Records that a stage begins or ends at time `time`, which the program has read from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
-    /// Records the begin of a stage for a picture that shows view number `view`.
+    /// Records that a stage begins now for a picture that shows view number `view`.
     pub fn begin_view(&self, stage: Stage, picture: PictureNumber, view: ViewNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;

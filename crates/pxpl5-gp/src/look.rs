@@ -1,4 +1,4 @@
-//! Snapshots of a graphics processor board for display.
+//! Snapshots of a graphics processor board, for display in user interfaces.
 
 use crate::cpu::Priority;
 use crate::firmware::Shared;
@@ -6,22 +6,22 @@ use crate::memory::Account;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// A snapshot of a graphics processor board at an instant.
+/// A snapshot of a graphics processor board at one instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpSnapshot {
     /// Programs of the board, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
-    /// Messages that have arrived and that no program has taken, in order.
+    /// Messages that have arrived but were not taken by a program, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
-    /// Receivers that have not accepted their message of the current chain, in the order of the chain.
+    /// Receivers that have not accepted their message of the current chain, in the order of the chain's messages.
     pub unaccepted: Vec<NodeId>,
-    /// Number of messages of each waiting chain, the next one first.
+    /// Number of messages in each chain that waits for the DMA, the next chain first.
     pub chains: Vec<usize>,
-    /// Bytes of memory in use by each account.
+    /// Bytes of memory in use for each purpose.
     pub memory: Vec<(Account, u64)>,
-    /// CPU time spent up to the last event of the board.
+    /// CPU time that the board has spent up to its last event.
     pub busy: Span,
-    /// Current period (field) of the first display, which began at its last retrace.
+    /// Current period of the first display (a field), which began at its last retrace.
     pub period: PeriodNumber,
 }
 
@@ -29,17 +29,17 @@ pub struct GpSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSnapshot {
     pub priority: Priority,
-    /// Name of the program's wait; empty before its first run.
+    /// Name of the condition that the program waits for; empty before its first run.
     pub waits_for: &'static str,
-    /// Remaining CPU time of the program's work; `None` without work. The foreground's value stands still while the
-    /// interrupt program works.
+    /// CPU time that the program's work still needs, or `None` without work. The foreground program's value stays
+    /// constant while the interrupt program works.
     pub work_left: Option<Span>,
 }
 
-/// A message in the inbox.
+/// A message that waits in the inbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessageInfo {
-    /// Arrival time of the last word.
+    /// Arrival time of the last word of the message.
     pub arrived: Time,
     /// Port of the sender.
     pub source: NodeId,

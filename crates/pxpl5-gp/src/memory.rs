@@ -1,26 +1,26 @@
-//! The memory of a board, accounted for by use. Bins have a limit of their own.
+//! The memory of a board, as the number of bytes in use for each purpose. Bins have a limit of their own.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
 use std::fmt;
 
-/// A use of a board's memory.
+/// A purpose for which a board's memory is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Account {
-    /// Program, stacks and message buffers.
+    /// The program, its stacks and message buffers.
     Program,
-    /// Primitives of this GP's share of the scene.
+    /// The primitives in this graphics processor's share of the scene.
     DisplayList,
-    /// Renderer commands of one bin context.
+    /// The renderer commands of one bin context, 0 or 1.
     Commands(u8),
-    /// Pointers in the bins of one bin context.
+    /// The pointers in the bins of one bin context, 0 or 1.
     Bins(u8),
 }
 
 impl Account {
     const SLOTS: usize = 6;
 
-    /// All accounts, including both bin contexts.
+    /// All purposes of memory. Commands and bins are listed for both bin contexts.
     pub const ALL: [Self; Self::SLOTS] =
         [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
 
@@ -45,7 +45,7 @@ impl fmt::Display for Account {
     }
 }
 
-/// A memory request that did not fit.
+/// A request for memory that exceeds the free memory.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error(
     "graphics processor at node {}: {account} {}needs {needed_bytes} bytes, {available_bytes} are available",
@@ -55,13 +55,13 @@ impl fmt::Display for Account {
 pub struct OutOfMemory {
     /// Port of the board.
     pub gp: NodeId,
-    /// Account of the request.
+    /// Purpose of the requested memory.
     pub account: Account,
-    /// Region whose bin overflowed, for a request of bins.
+    /// Region whose bin exceeded the memory, if the request was for bins.
     pub region: Option<RegionId>,
-    /// Bytes that the account would have needed.
+    /// Number of bytes that the purpose would have needed.
     pub needed_bytes: u64,
-    /// Bytes that were available to the account.
+    /// Number of bytes that were available for the purpose.
     pub available_bytes: u64,
 }
 
@@ -69,7 +69,7 @@ fn named(region: Option<RegionId>) -> String {
     region.map_or_else(String::new, |region| format!("(region {}) ", region.0))
 }
 
-/// Bytes in use, by account.
+/// The memory of a board: number of bytes in use for each purpose.
 #[derive(Clone, Debug)]
 pub struct Memory {
     gp: NodeId,
@@ -80,17 +80,18 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Makes an empty memory of `capacity` bytes. The bins of both contexts together may take `bins` bytes of it.
+    /// Makes an empty memory of `capacity` bytes. The bins of both contexts together can use at most `bins` of these
+    /// bytes.
     #[must_use]
     pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
         Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
     }
 
-    /// Sets the number of bytes that an account holds.
+    /// Sets the number of bytes in use for a purpose.
     ///
     /// # Errors
     ///
-    /// [`OutOfMemory`] if the bytes do not fit beside the other accounts. Nothing changes then.
+    /// [`OutOfMemory`] if the bytes do not fit beside those of the other purposes. Nothing changes then.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];
@@ -107,25 +108,26 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the bytes that the bins of a context may take beside the bins of the other context.
+    /// Returns the number of bytes that the bins of a context can use while the bins of the other context stay
+    /// unchanged.
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
     }
 
-    /// Returns the bytes in use by one account.
+    /// Returns the number of bytes in use for one purpose.
     #[must_use]
     pub const fn used_by(&self, account: Account) -> u64 {
         self.used[account.slot()]
     }
 
-    /// Returns the bytes in use by all accounts.
+    /// Returns the number of bytes in use for all purposes together.
     #[must_use]
     pub fn used(&self) -> u64 {
         self.used.iter().sum()
     }
 
-    /// Returns the greatest number of bytes in use at any time so far.
+    /// Returns the greatest number of bytes that were in use at the same time so far.
     #[must_use]
     pub const fn peak(&self) -> u64 {
         self.peak

@@ -1,4 +1,5 @@
-//! Messages as a program sees them: received from the inbox and sent in chains, each with the cost of its software.
+//! Messages as a program sees them. Messages are received from the inbox and sent in chains, and each costs CPU time of
+//! the message software.
 //!
 //! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
 //! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
@@ -9,41 +10,43 @@ use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
-/// A chain of messages whose software cost is already paid ([`Gp::prepare`]). [`Gp::start`] sends it.
+/// A chain of messages whose software cost was already paid by [`Gp::prepare`]. [`Gp::start`] sends the chain.
 #[derive(Debug)]
 pub struct Chain(Vec<ChainLink>);
 
 impl Gp {
-    /// Waits for the next message in order of arrival, and pays the software cost of its reception.
+    /// Waits for the next message in order of arrival, and spends the CPU time of its reception.
     pub async fn receive(&self) -> Received {
         let received = self.next_message().await;
         self.pay_for(&received).await;
         received
     }
 
-    /// Waits for the next message in order of arrival, without cost. The program pays the cost with [`Gp::pay_for`].
+    /// Waits for the next message in order of arrival, without spending CPU time. The program spends the time later
+    /// with [`Gp::pay_for`].
     pub async fn next_message(&self) -> Received {
         self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
     }
 
-    /// Takes the next message if one has arrived, without cost. The program pays the cost with [`Gp::pay_for`].
+    /// Takes the next message if one has arrived, without spending CPU time. The program spends the time later with
+    /// [`Gp::pay_for`].
     #[must_use]
     pub fn take_message(&self) -> Option<Received> {
         self.shared.borrow_mut().inbox.pop_front()
     }
 
-    /// Pays the software cost of the reception of a message: the time of the table, or of the code.
+    /// Spends the CPU time of the reception of a message. The time comes from the timing table or from i860 code.
     pub async fn pay_for(&self, received: &Received) {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message: pays for its reception, does work, sends messages one by one, then a last one in the
-    /// background.
-    /// Each of `messages` waits until the clump buffer is free. The program does not wait for `last`.
+    /// Answers a message in four steps: spends the CPU time of its reception, does `work`, sends `messages` one by one,
+    /// and sends `last` in the background. Each of `messages` waits until the clump buffer (the memory for outgoing
+    /// messages) is free. The program does not wait for `last`.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if i860 code does not reach its end.
+    /// [`Fault::Processor`] if i860 code does not return.
     pub async fn answer(
         &self,
         received: &Received,
@@ -65,21 +68,23 @@ impl Gp {
         Ok(())
     }
 
-    /// Sends one message in the background: pays the software cost, then queues the message behind earlier ones.
+    /// Sends one message in the background. The program spends the software cost, then the message is queued behind
+    /// earlier messages.
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one DMA chain, for one software cost, in the background.
-    /// Messages to different receivers are sent at the same time. A chain waits for the previous chain.
+    /// Sends several messages as one DMA chain, in the background. The chain costs the CPU time of only one message.
+    /// Messages to different receivers are sent at the same time. A chain waits for the acceptance of the previous
+    /// chain.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
     }
 
-    /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver.
-    /// A group keeps its receiver's port from its first message to its last, so that no other board's message comes
-    /// between.
+    /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver. The
+    /// receiver's port stays reserved from the first to the last message of a group, so no message of another board
+    /// comes between them.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
             // The last message of a group releases the port of the receiver.
@@ -91,12 +96,12 @@ impl Gp {
         self.start(chain)
     }
 
-    /// Pays the software cost of a chain that [`Gp::start`] sends later.
+    /// Spends the software cost of a chain of messages. [`Gp::start`] sends the chain later.
     pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
         self.pay_for_chain(self.unheld(batch)).await
     }
 
-    /// Passes a chain to the DMA, which sends it after earlier chains.
+    /// Passes a chain of messages to the DMA, which sends them after earlier chains.
     pub fn start(&self, Chain(links): Chain) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         if links.is_empty() {
@@ -112,8 +117,8 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// Makes a chain of messages. Each comes as receiver, number of words, content, and true if it keeps the receiver's
-    /// port for the next one.
+    /// Makes a chain of messages. Each item has the receiver, the number of words and the content of a message. The
+    /// boolean is true if the receiver's port stays reserved for the next message.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {
@@ -128,7 +133,7 @@ impl Gp {
         chain
     }
 
-    /// Spends the time of the software of a message.
+    /// Spends the CPU time of the message software: the time of the timing table, or of `code` on the i860.
     async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
         let span = {
             let shared = &mut *self.shared.borrow_mut();
@@ -146,7 +151,7 @@ impl Gp {
         }
     }
 
-    /// Stops the board with a fault of its own software. The program never continues.
+    /// Stops the board because of a fault in its own software. The calling program never continues.
     async fn stop(&self, fault: Fault) {
         self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await

@@ -1,4 +1,4 @@
-//! Marks that firmware records for the observer. Marks cost no simulated time and change nothing.
+//! Records of stages, made by firmware for observers of a run. Records cost no simulated time and change no state.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId, ViewNumber};
@@ -24,31 +24,32 @@ pub enum Stage {
     Swap,
 }
 
-/// Begin or end of a stage.
+/// The begin or the end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {
     /// The program starts the stage.
     Begin,
-    /// The last work or message of the stage is complete.
+    /// The last work or the last message of the stage is complete.
     End,
 }
 
-/// A record of the begin or end of a stage.
+/// A record that a stage began or ended at a certain time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mark {
-    /// Simulated time of the record.
+    /// Simulated time at which the stage began or ended.
     pub time: Time,
-    /// Port of the board.
+    /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture. A host that sends views independently of pictures counts its transmissions instead.
+    /// Number of the picture that the stage makes. A host that sends views independently of pictures uses the number of
+    /// the transmission instead.
     pub picture: PictureNumber,
-    /// Surface that the stage draws, for stages that draw one eye at a time.
+    /// Surface for which the stage draws, if the stage draws one eye at a time.
     pub surface: Option<SurfaceId>,
-    /// Stage that begins or ends.
+    /// Stage that began or ended.
     pub stage: Stage,
-    /// Begin or end.
+    /// Tells if the stage began or ended.
     pub edge: StageEdge,
-    /// View that the picture shows, if the program reports it.
+    /// View that the picture shows, if the program has recorded the view.
     pub view: Option<ViewNumber>,
 }

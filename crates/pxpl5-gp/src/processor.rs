@@ -1,4 +1,4 @@
-//! The board's i860 with its memory, which runs code and counts clocks.
+//! The board's i860 with its memory. The i860 runs code and counts clocks.
 
 use crate::window;
 use i860::{Bus, Cpu, DecodedPrograms, Program, Ram, RunEnd, State, Trap, Unmapped};
@@ -12,22 +12,22 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Version of the i860 code that a board runs when the time of its work comes from code.
+/// Version of the i860 code that a board runs for its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// Code as from a compiler without optimization, nearly twice as large as the instruction cache.
+    /// Code as from a compiler without optimization. The code is nearly twice as large as the instruction cache.
     Unoptimised,
-    /// Code as from a good compiler of about 1990. Slats of 1994 and 1995 had such code, which did not fit the
+    /// Code as from a good compiler of about 1990. Slats of 1994 and 1995 had such code, which was too large for the
     /// instruction cache (I3D95).
     Compiled,
-    /// Code scheduled by hand in dual-instruction mode, which fits the cache: optimized PPHIGS (TR94). Slats with code
-    /// that fits would have been faster by a factor of about 3 (I3D95).
+    /// Code scheduled by hand in dual-instruction mode, small enough for the instruction cache. Optimized PPHIGS had
+    /// such code (TR94). With such code, Slats would have been about 3 times faster (I3D95).
     Scheduled,
 }
 
 impl CodeVersion {
-    /// Returns the name in experiment files.
+    /// Returns the name of the version in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -38,11 +38,11 @@ impl CodeVersion {
     }
 }
 
-/// The reason why a program on the processor did not reach its end.
+/// The reason why a program on the i860 did not return.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessorFault {
-    /// The program took a trap.
+    /// The program caused a processor trap.
     #[error("graphics processor at node {}: {trap}", gp.0)]
     Trap {
         /// Port of the board.
@@ -50,39 +50,40 @@ pub enum ProcessorFault {
         /// Cause and address of the trap.
         trap: Trap,
     },
-    /// The program did not return within its instruction budget.
+    /// The program used up its instruction budget before it returned.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
         /// Port of the board.
         gp: NodeId,
-        /// Address of the next instruction at the end of the budget.
+        /// Address of the instruction that would have been executed next.
         address: u32,
         /// Instruction budget of the call.
         budget: u64,
     },
-    /// An access to data outside the memory.
+    /// An access to data at an address without memory.
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
     Unmapped {
         /// Port of the board.
         gp: NodeId,
-        /// Address of the first word.
+        /// Address of the first word of the access.
         address: u32,
         /// Number of requested words.
         words: usize,
     },
-    /// Two bin contexts would overlap in memory.
+    /// The outputs of the two bin contexts would overlap in memory.
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
         gp: NodeId,
         /// Bin context that requested memory.
         context: u8,
-        /// Bytes that the context needs.
+        /// Number of bytes that the context needs.
         needed_bytes: u32,
-        /// Bytes between the data before the context and the other context or the end of memory.
+        /// Number of bytes that are free for this context: between the data below it and the other context or the end
+        /// of memory.
         available_bytes: u32,
     },
-    /// The program lacks the label of its entry.
+    /// The program has no label with the name of the requested entry.
     #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
     NoEntry {
         /// Port of the board.
@@ -92,15 +93,15 @@ pub enum ProcessorFault {
     },
 }
 
-/// Return address of called programs. No code is there; the run stops at this address.
+/// Return address of every call. Memory has no code there; a run stops when it reaches this address.
 const RETURN: u32 = 0x0800;
 
-/// Returns the range of addresses of a program.
+/// Returns the range of memory addresses that a program occupies.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// Memory as the core sees it. The part shared with the ring interface is not cacheable.
+/// Memory as the i860 sees it. The part that the ring interface uses too is never cached.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -120,60 +121,60 @@ impl Bus for Memory {
     }
 }
 
-/// Bytes of a data-cache line, to which the output of a bin context is aligned.
+/// Size of a data-cache line in bytes. The output of a bin context begins at a multiple of this size.
 const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
-/// Number of the register with the return address.
+/// Number of the integer register that holds the return address of a call.
 const LINK: usize = 1;
 
 /// An i860 with the memory of a board.
 ///
-/// The clock stands still between calls. Caches, queues and the open DRAM row stay as the last call left them. A write
-/// from outside counts as a write by code before the call: it takes no time and changes no cache.
+/// The i860's clock stops between calls. Caches, queues and the open DRAM row keep their state until the next call. A
+/// write by Rust code counts as a write by i860 code before the call: it takes no time and changes no cache.
 ///
-/// Calls are not memoized as a whole, because no call repeats exactly. For a still head, 96 % of the calls have the
-/// code, arguments and parameters of an earlier call (188 calls of Slats with 110 triangles, 2,800 of Rendering Control
-/// with the aircraft, 48 fields each). For a moving head none have. But no call finds the same lines in the caches,
-/// whose replacement is pseudo-random, or the same phase of the memory's refresh. Runs of instructions do repeat: see
-/// [`i860::Config::memoise`].
+/// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
+/// calls have the code, arguments and parameters of an earlier call. (The sample has 188 calls of Slats with 110
+/// triangles and 2,800 calls of Rendering Control with the aircraft, over 48 fields each.) While the head moves, no
+/// call does. Even then the caches hold other lines, because their replacement is pseudo-random, and the memory refresh
+/// has another phase. Clocks of short runs of instructions can be reused: see [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
-    /// Configuration of the core, used again at every reset.
+    /// Configuration of the i860, used again at every reset.
     core: i860::Config,
     cpu: Cpu,
     memory: Memory,
     loaded: Option<Arc<Program>>,
-    /// True if the memory holds the loaded program unchanged.
+    /// True if memory still holds the loaded program unchanged.
     is_as_loaded: bool,
-    /// Decoded programs and their clocks, shared with other boards.
+    /// Decoded programs with their remembered clocks. Several boards share them.
     shelf: Rc<RefCell<DecodedPrograms>>,
-    /// All programs that were ever loaded.
+    /// All programs that were ever loaded, in the order of their first calls.
     programs: Vec<Arc<Program>>,
-    /// Address ranges of the output of both bin contexts.
+    /// Address range of the output of each bin context.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses of breakpoints, and the hits since the last [`Processor::take_hits`].
+    /// Addresses of the breakpoints. `hits` holds the hits since the last [`Processor::take_hits`].
     breakpoints: BTreeSet<u32>,
     hits: Vec<BreakpointHit>,
 }
 
-/// The state of the processor at a breakpoint, before the instruction executes.
+/// The state of the i860 at a breakpoint, before the instruction executes.
 ///
-/// A call runs from begin to end at one instant of the board, which spends its clocks afterwards. The call therefore
-/// does not stop at a breakpoint.
+/// A call runs from begin to end at one instant of simulated time, and the board spends its clocks afterwards. The call
+/// therefore does not stop at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
     /// Port of the board.
     pub gp: NodeId,
-    /// Address of the instruction.
+    /// Address of the instruction at the breakpoint.
     pub address: u32,
-    /// Time since the begin of the call.
+    /// i860 time from the begin of the call to the breakpoint.
     pub into_call: Span,
-    /// Registers, control registers and pipes.
+    /// Registers, control registers and pipes of the i860.
     pub state: Box<State>,
 }
 
-/// Most hits that are kept until [`Processor::take_hits`]. Later hits are dropped.
+/// Greatest number of hits that are kept until [`Processor::take_hits`]. Later hits are dropped.
 pub const KEPT_HITS: usize = 64;
 
 impl fmt::Debug for Processor {
@@ -183,10 +184,11 @@ impl fmt::Debug for Processor {
 }
 
 impl Processor {
-    /// Period of the clock: 40 MHz (TR94).
+    /// Period of the i860's clock: 25 ns at 40 MHz (TR94).
     pub const CLOCK: Span = Span(25_000);
 
-    /// Makes a processor after reset with zeroed memory. `core` gives the timing of its instructions and of the memory.
+    /// Makes an i860 in the state after reset, with zeroed memory. `core` configures the timing of instructions and
+    /// memory.
     #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let memory = Memory(Ram::new(0, memory_bytes as usize));
@@ -206,19 +208,19 @@ impl Processor {
         }
     }
 
-    /// Shares decoded programs and their clocks with other processors of the same core configuration. No simulated time
-    /// changes.
+    /// Shares decoded programs and their remembered clocks with other boards. All boards must have the same core
+    /// configuration. Simulated times do not depend on this call.
     pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
         self.shelf = Rc::clone(shelf);
     }
 
-    /// Resets the processor and turns memoization off. No simulated time changes.
+    /// Resets the i860 and turns memoization off. Simulated times do not depend on this call.
     pub fn disable_memoization(&mut self) {
         self.core.memoise = false;
         self.cpu = Cpu::new(self.core);
     }
 
-    /// Returns the version of the code that the board runs.
+    /// Returns the version of the i860 code that the board runs.
     #[must_use]
     pub const fn version(&self) -> CodeVersion {
         self.version
@@ -236,7 +238,7 @@ impl Processor {
         self.memory.0.bytes().len() as u32
     }
 
-    /// Writes words to memory without any effect on caches.
+    /// Writes words to memory. The caches stay unchanged.
     ///
     /// # Errors
     ///
@@ -252,7 +254,7 @@ impl Processor {
         Ok(())
     }
 
-    /// Reads words of memory as code has left them.
+    /// Reads words of memory, including all stores of i860 code.
     ///
     /// # Errors
     ///
@@ -271,8 +273,9 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Reserves memory for the output of bin context 0 or 1, instead of its previous reservation. Returns the address.
-    /// Context 0 begins after the data, which end at `end_of_data`. Context 1 lies at the end of memory.
+    /// Reserves memory for the output of bin context 0 or 1 and returns the address. The earlier reservation of the
+    /// same context ends. Context 0 begins after the program's data, at `end_of_data` or above. Context 1 lies at the
+    /// end of memory.
     ///
     /// # Errors
     ///
@@ -301,9 +304,10 @@ impl Processor {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry` with some registers set. Returns the time until the program returns.
+    /// Calls a program at its label `entry`, with some registers set before. Returns the time from the call to the
+    /// return.
     ///
-    /// If another program was called before, this one is loaded first, which takes no time.
+    /// If memory holds another program, this program is loaded first. Loading takes no simulated time.
     ///
     /// # Errors
     ///
@@ -335,7 +339,7 @@ impl Processor {
         }
     }
 
-    /// Runs the loaded program until it returns, with its decoded code from the shelf.
+    /// Runs the loaded program until it returns. Its decoded code comes from the shared store `shelf`.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();
@@ -351,7 +355,8 @@ impl Processor {
         end
     }
 
-    /// Runs step by step (an instruction, a pair, or a branch with its slot) and records a hit at each breakpoint.
+    /// Runs the loaded program step by step and records a hit at each breakpoint. A step is an instruction, a pair, or
+    /// a branch with its delay slot.
     fn run_with_breakpoints(&mut self, begin: u64, budget: u64) -> RunEnd {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
@@ -369,36 +374,36 @@ impl Processor {
         }
     }
 
-    /// Sets the addresses at which calls record hits, instead of earlier ones. No clock changes.
+    /// Replaces all breakpoints by the given addresses. Calls take the same number of clocks as before.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.breakpoints = addresses;
     }
 
-    /// Returns and removes the hits since the last call of this function, at most [`KEPT_HITS`].
+    /// Removes and returns the hits recorded since the last call of this function. At most [`KEPT_HITS`] hits are kept.
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         std::mem::take(&mut self.hits)
     }
 
-    /// Returns the state that the last call left. Its program counter is the return address of the call.
+    /// Returns the state of the i860 after the last call. The program counter holds the return address of this call.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.cpu.state
     }
 
-    /// Returns the clocks of all calls so far.
+    /// Returns the number of clocks of all calls so far.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// Returns the program that was called last.
+    /// Returns the program that was called last, if any.
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
     }
 
-    /// Returns the programs that memory still holds as loaded: the last called one first, then the others in the order
-    /// of their first calls.
+    /// Returns the programs that memory still holds unchanged. The program called last comes first. The others follow
+    /// in the order of their first calls.
     pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
         let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
         let others = self.programs.iter().filter(move |program| !is_last(program));
@@ -422,7 +427,7 @@ impl Processor {
         Ok(())
     }
 
-    /// Returns true if memory holds a program as it was loaded.
+    /// Returns true if memory holds a program exactly as it was loaded.
     fn holds(&self, program: &Program) -> bool {
         let Range { start, end } = extent(program);
         self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())

@@ -1,4 +1,4 @@
-//! The message software as i860 code of the board (kernels/ring.s), and the part of memory that it shares with the ring
+//! The message software as i860 code of the board (kernels/ring.s), and the memory that it shares with the ring
 //! interface.
 //!
 //! ```text
@@ -7,12 +7,12 @@
 //!   |         | frame, stack      | to send    | of messages and chains | that have arrived   |
 //! ```
 //!
-//! The original software is not published. kernels/ring_rules.md states what the code assumes about it and how the code
-//! was written.
+//! The original software is not published. kernels/ring_rules.md states the assumptions about the original software,
+//! and how the code was written.
 //!
-//! Before each call, Rust code plays the part of the interface's DMA. This code puts a message into the next buffer
-//! when its software begins, because the board's inbox has no limited number of buffers. When a chain is built, all
-//! earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code does the work of the interface's DMA. The Rust code puts a message into the next receive
+//! buffer when the message software begins, because the board's inbox has no limited number of buffers. When a chain is
+//! built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -31,16 +31,17 @@ const BUFFERS: u32 = WINDOW + 0x3000;
 
 // Sizes of rings, queue and buffers are assumed, because the interface itself is (kernels/ring_rules.md, last table).
 
-/// Number of receive buffers and of their descriptors.
+/// Number of receive buffers. There is one descriptor for each buffer.
 const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
-/// Size of a receive buffer: a header of two words and the longest message, in whole cache lines.
+/// Size of a receive buffer in bytes. A buffer holds a header of two words and the longest message, in whole cache
+/// lines.
 const BUFFER_BYTES: u32 = 4608;
-/// Number of descriptors for messages in chains.
+/// Number of descriptors for outgoing messages in chains.
 const TX_COUNT: u32 = 256;
 const TX: u32 = WINDOW + 0x1000;
 const DESCRIPTOR_BYTES: u32 = 16;
-/// Number of entries of the receive queue.
+/// Number of entries in the queue of received messages.
 const ENTRY_COUNT: u32 = 16;
 const ENTRY_BYTES: u32 = 64;
 
@@ -56,23 +57,23 @@ const HANDLERS: u32 = DATA + 64;
 const CAUSE: u32 = WINDOW;
 const DONE: u32 = WINDOW + 12;
 
-/// Number of message kinds in headers: words for a program, commands, pixels.
+/// Number of message kinds that a header can name: words for a program, commands, pixels.
 const KINDS: u32 = 3;
 
-/// Flag of a request that keeps the receiver's port for the next message.
+/// Flag of a send request: the receiver's port stays reserved for the next message.
 const HOLD: Word = 1;
 
-/// Instruction budget of a call: many times the need of a message.
+/// Instruction budget of a call. A message needs only a small part of the budget.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the software that receives a message: interrupt, dispatch, queue, and the program's part, which takes the
-    /// message and releases its buffer.
+    /// Runs the software that receives a message and returns its time. The software has four parts: interrupt,
+    /// dispatch, queue, and the program's part. The program's part takes the message and releases its buffer.
     ///
     /// # Errors
     ///
     /// [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`] if the
-    /// code does not reach its end.
+    /// code does not return.
     pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
         let (kind, length, words) = match body {
             Body::Words(words) => (0, words.len() as u32, &words[..]),
@@ -88,14 +89,14 @@ impl Processor {
         taken.map(|_| span).map_err(|_| Fault::Protocol { node: self.node(), found: what() })
     }
 
-    /// Runs the software that sends a chain of messages: header and descriptor of each message, and release of the
-    /// descriptors of earlier chains.
-    /// Each message comes with true if it keeps its receiver's port. If there are more messages than descriptors, they
-    /// form several chains.
+    /// Runs the software that sends a chain of messages, and returns its time. The software writes a header and a
+    /// descriptor for each message, and releases the descriptors of earlier chains. The boolean beside each message is
+    /// true if the message keeps its receiver's port reserved. If there are more messages than descriptors, they form
+    /// several chains.
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not reach its end.
+    /// [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
         // The address of the words is 0, because their content does not travel through this memory.
         let request = |(message, hold): (&Message, bool)| {
@@ -121,10 +122,10 @@ impl Processor {
     }
 }
 
-/// A message to be sent: receiver, kind and flags, length in words, address.
+/// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A queue entry as the program receives it.
+/// A received message as the program takes it from the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -132,12 +133,12 @@ struct Taken {
     sender: u32,
 }
 
-/// The number of an error of the software, as in ring.s.
+/// The error number with which the message software refuses a message. The numbers are those of ring.s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
-/// Puts a message into the next buffer, as the interface does, and runs the code that receives it. `header` has its
-/// kind and length.
+/// Puts a message into the next receive buffer, as the interface does, and runs the code that receives it. `header` has
+/// the kind and length of the message.
 fn deliver(
     processor: &mut Processor,
     source: NodeId,
@@ -160,8 +161,8 @@ fn deliver(
     Ok((span, if entry == 0 { Err(Refusal(place)) } else { Ok(Taken { place, words, sender }) }))
 }
 
-/// Runs the code that builds and starts a chain. Returns its time, and the place of the first message that the software
-/// refuses.
+/// Runs the code that builds and starts a chain of messages, and returns its time. If the code refuses a message, the
+/// index of the first refused message is returned.
 fn chain(
     processor: &mut Processor,
     requests: &[Request],
@@ -178,7 +179,7 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Initializes queues, descriptors and the table of handlers, unless the memory has them already.
+/// Initializes queues, descriptors and the table of handlers in memory. If memory already holds them, nothing changes.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());

@@ -1,50 +1,49 @@
-//! Every number of the board, and of the host, which runs on the same model.
+//! All timing parameters of the board. The host workstation uses the same model with other parameters.
 
 use crate::CodeVersion;
 use pxpl5_sim::Span;
 
 parameters::parameter_table! {
-    /// Times and sizes of a graphics processor and of its code.
+    /// CPU times and memory sizes of a graphics processor.
     pub struct GpTiming {
-        /// Size of a board's memory.
+        /// Size of the memory of one board.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
-        /// Part of the memory for the bins of Rendering Control, both contexts together.
+        /// Part of the memory for the bins of Rendering Control. Both bin contexts share this part.
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";
-        /// CPU time of one triangle and eye: transform, light, set up, make commands.
+        /// CPU time of one triangle for one eye: to transform, light and set up the triangle, and to make its commands.
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
-        /// CPU time of one entry in a bin.
+        /// CPU time to put one entry into a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time of one bin entry that is handed over with the token of its region.
+        /// CPU time of one bin entry when a bin is handed over together with the token of its region.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
-        /// Additional CPU time of a triangle that is clipped.
+        /// Additional CPU time of a triangle that needs clipping.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";
-        /// CPU time of one sphere and eye.
+        /// CPU time of one sphere for one eye.
         sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "the same as a triangle: one transformed centre instead of three vertices, and the set-up of a conic";
-        /// CPU time to apply one edit to the display list.
+        /// CPU time to apply one edit by the host to the display list.
         edit_ns: 10_000, "ns", Assumed, 2000..=50000 in 0..=MAX, "a few hundred instructions of display-list traversal";
         /// CPU time to begin a pass over the display list.
         pass_ns: 5_000, "ns", Assumed, 1000..=20000 in 0..=MAX, "concatenate matrices, reset bins";
-        /// Additional CPU time to transform a structure to its place for an eye.
+        /// Additional CPU time to transform one structure of the display list for one eye.
         structure_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, because no time was published; times of code count it separately";
-        /// Additional CPU time of a structure with spheres, for data of the view that spheres need.
+        /// Additional CPU time of a structure that contains spheres, for data of the view.
         sphere_view_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, like the time of a structure; times of code count it separately";
     }
 }
 
 impl GpTiming {
-    /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye.
-    /// The value is fitted to the limit of 110 triangles without the COPY optimization (TR94). Values of 29.8 to 30.1
-    /// us give exactly 110.
+    /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye. The time is fitted to the published limit
+    /// of 110 triangles without the COPY optimization (TR94). Times of 29.8 to 30.1 us give a limit of exactly 110.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of the Slats code of 1995: 55.8 us per triangle and eye.
-    /// The value is fitted to the limit of about 100 triangles with the COPY optimization (I3D95). Values of 55.4 to
-    /// 56.3 us give exactly 100.
+    /// Timing of the Slats code of 1995: 55.8 us per triangle and eye. The time is fitted to the published limit of
+    /// about 100 triangles with the COPY optimization (I3D95). Times of 55.4 to 56.3 us give a limit of exactly 100.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of Slats with code that fits the instruction cache: a third of the triangle time of 1994 (I3D95).
+    /// Timing of Slats with code that fits the instruction cache. The time of a triangle is a third of the time of 1994
+    /// (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
         sphere_ns: Self::SLATS_1994.sphere_ns / 3,
@@ -52,14 +51,14 @@ impl GpTiming {
     };
 }
 
-/// Use of the i860 code of triangles and spheres, on which its times depend.
+/// The program that uses the i860 code of triangles and spheres. The times of this code depend on the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
-    /// PPHIGS: frames, Phong shading, bins.
+    /// PPHIGS: whole frames, Phong shading, commands in bins.
     Pphigs,
-    /// Slats: fields, precomputed colours, clumps of thirty, both eyes in one pass.
+    /// Slats: fields, precomputed colours, clumps of thirty triangles, both eyes in one pass.
     Slats,
-    /// Slats with light on the GP: fields, clumps of thirty, one eye after the other.
+    /// Slats with lighting on the graphics processor: fields, clumps of thirty triangles, one eye after the other.
     SlatsLit,
 }
 
@@ -71,9 +70,11 @@ pub enum CodeUse {
 // `pass_ns` is the time at the begin of a pass that does not belong to structures: to reset bins and to load code into
 // the caches. A structure that culls takes 3.2 us more than others; the table does not contain this difference.
 impl GpTiming {
-    /// Returns this table with the times of primitives that follow from the code of a version in one use.
+    /// Returns this table with the primitive times of i860 code. `version` selects the code, and `of` the program that
+    /// uses it.
     ///
-    /// PPHIGS has times of its scheduled code only: it fits the instruction cache, and no machine of the papers ran it otherwise.
+    /// For PPHIGS only the scheduled code has times: it fits the instruction cache, and every PPHIGS of the papers was
+    /// such code.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
         match (of, version) {
@@ -85,7 +86,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of the scheduled code for Phong triangles of a frame, in bins: PPHIGS.
+    /// Returns this table with the primitive times of PPHIGS: scheduled code, Phong triangles of a frame, commands in
+    /// bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -103,8 +105,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of the compiled code for field triangles with precomputed colours: Slats.
-    /// A clump has thirty triangles, and one pass makes both eyes.
+    /// Returns this table with the primitive times of Slats: compiled code, field triangles with precomputed colours. A
+    /// clump has thirty triangles, and one pass makes the commands of both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -121,7 +123,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of the scheduled code for field triangles with precomputed colours, in clumps.
+    /// Returns this table with the primitive times of scheduled code for Slats: field triangles with precomputed
+    /// colours, in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -138,8 +141,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of the compiled code for Gouraud triangles of a field: Slats with lighting on
-    /// the GP. A clump has thirty triangles.
+    /// Returns this table with the primitive times of Slats with lighting on the graphics processor. The code is
+    /// compiled, and the triangles are Gouraud triangles of a field. A clump has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -156,7 +159,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of the scheduled code for Gouraud triangles of a field, in clumps.
+    /// Returns this table with the primitive times of scheduled code for Slats with lighting on the graphics processor:
+    /// Gouraud triangles of a field, in clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
@@ -175,30 +179,32 @@ impl GpTiming {
 }
 
 parameters::parameter_table! {
-    /// Times of the host workstation and of its link to the ring.
+    /// Times of the host workstation and of the link between host and ring.
     pub struct HostTiming {
         /// Data rate of the link from the host to the ring.
         link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
-        /// CPU time of the host to send or receive a message.
+        /// CPU time of the host to send or receive one message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
-        /// Time between two poses of the scene's own motion that the host sends without a request. With a tracker, the
-        /// host sends the tracker's reports instead.
+        /// Time between successive poses that the host sends without a request. Such poses come from the scene's
+        /// recorded or computed motion. With a tracker, the host sends the tracker's reports instead.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
-        /// Mean time of the application between the EDIT of a frame and the next frame, if the host waits for EDIT.
+        /// Mean time that the application needs between two frames, from the EDIT of a frame to the next frame. The
+        /// time counts if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
-        /// Half width of the uniform distribution of the application's time; at most its mean.
+        /// Half of the width of the uniform distribution of the application's time. The value is at most the mean time.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
 
 impl HostTiming {
-    /// Returns the time of `words` words on the link, rounded down to a picosecond.
+    /// Returns the time that `words` words need on the link, rounded down to a picosecond.
     #[must_use]
     pub const fn link_span(&self, words: u32) -> Span {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
-    /// Returns the application's time for one frame: uniformly distributed around its mean, by a random 64-bit number.
+    /// Returns the application's time for one frame. The time is uniformly distributed around its mean; `drawn` is a
+    /// random 64-bit number.
     #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
@@ -210,7 +216,7 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the host as a board. Only its software costs and its memory size matter.
+    /// Returns the timing table of the host as a board. Only its software costs and its memory size have an effect.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }

@@ -1,16 +1,16 @@
-//! The memory range of the message software, and the uncacheable window in it.
+//! The memory range of the message software, and the uncached part of this range.
 
 use std::ops::Range;
 
-/// Memory range of the message software: the end of the first megabyte. No program may use it.
+/// Memory range of the message software: the end of the first megabyte. Other programs must not use it.
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
-/// First address of the uncacheable window, which ends with [`RING_MEMORY`].
-/// The ring interface reads and writes the window directly in memory. The processor does not watch the bus, so the
-/// board keeps these addresses out of the caches (KEN#).
+/// First address of the uncached part of memory, which ends with [`RING_MEMORY`]. The ring interface reads and writes
+/// this part directly. The i860 does not watch the bus, so the board keeps these addresses out of the caches (KEN#
+/// pin).
 pub(crate) const WINDOW: u32 = 0xF_4000;
 
-/// Returns true if the caches may hold an address.
+/// Returns true if the caches can hold the data at an address.
 pub(crate) const fn is_cacheable(address: u32) -> bool {
     address < WINDOW || address >= RING_MEMORY.end
 }

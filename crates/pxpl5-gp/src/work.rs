@@ -1,43 +1,43 @@
-//! Work of the CPU, with its time from the timing table or from code.
+//! CPU work whose time comes from the timing table or from i860 code.
 
 use crate::firmware::{Fault, Gp};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::Span;
 
-/// A piece of work whose time is known from the timing table and from code.
+/// A unit of CPU work. Its time can be taken from the timing table or measured by running i860 code.
 pub trait Work {
-    /// Returns the time of the work by the timing table.
+    /// Returns the CPU time of the work according to the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
 
-    /// Runs the work as code on the board's processor and returns its time. Parts without code take the time of the
-    /// table.
+    /// Runs the work as i860 code on the board's processor and returns its time. If a part of the work has no code, the
+    /// timing table gives its time.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not reach its end.
+    /// [`ProcessorFault`] if the code does not return.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
-    /// Returns the number of vertices that the work transforms. Each corner of a triangle and each centre of a sphere
-    /// counts once for each view. Most work transforms none.
+    /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. Each
+    /// counts once for each view. Most kinds of work transform no vertices.
     fn vertex_transforms(&self) -> u64 {
         0
     }
 }
 
 impl Gp {
-    /// Does work, and spends its time at this program's priority.
+    /// Does a unit of work, and spends its CPU time at the priority of this program.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if its code does not reach its end.
+    /// [`Fault::Processor`] if the code of the work does not return.
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.spend(span).await;
         Ok(())
     }
 
-    /// Does work that answers a message, which [`GpUse`](crate::GpUse) counts apart.
+    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts this work separately.
     pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;
@@ -45,7 +45,7 @@ impl Gp {
         Ok(())
     }
 
-    /// Returns the time of work by the table or by code, and counts what the work transforms.
+    /// Returns the CPU time of work, from the timing table or from i860 code, and counts the transformed vertices.
     fn time_of(&self, work: &impl Work) -> Result<Span, Fault> {
         let shared = &mut *self.shared.borrow_mut();
         shared.vertex_transforms += work.vertex_transforms();
@@ -55,14 +55,14 @@ impl Gp {
         })
     }
 
-    /// Returns true if the time of this board's work comes from code.
+    /// Returns true if the time of this board's work comes from i860 code.
     #[must_use]
     pub fn runs_code(&self) -> bool {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Lets `image` write to the memory of the processor, if the work of this board runs as i860 code. On other boards
-    /// this does nothing.
+    /// Calls `image` to write data to the memory of the i860. On boards that do not run i860 code this function does
+    /// nothing.
     ///
     /// # Errors
     ///

@@ -70,7 +70,8 @@ impl Panel {
         if self.is_interlaced() { (period.0 % 2, 2) } else { (0, 1) }
     }
 
-    /// Returns the number of pixels that the scan lights before pixel (x, y).
+    /// Returns the number of pixels that a rolling scan lights before pixel (x, y). For a global scan the result is the
+    /// number of all pixels.
     fn order(&self, x: u64, y: u64, rows: (u64, u64)) -> u64 {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
