@@ -80,7 +80,7 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices transformed since the start.
     pub(crate) vertex_transforms: u64,
-    /// CPU time requested so far for the software of messages. The next field is the CPU time of work that answers
+    /// CPU time requested so far for the software of messages. `answer_work` is the CPU time of work that answers
     /// messages.
     pub(crate) message_software: Span,
     pub(crate) answer_work: Span,
@@ -96,8 +96,8 @@ pub(crate) struct Shared {
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch of which every receiver has accepted at least one message. The next field is the number
-    /// of the last completely accepted batch.
+    /// Number of the last batch of which every receiver has accepted at least one message. `accepted` is the number of
+    /// the last completely accepted batch.
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,

@@ -6,10 +6,10 @@ use pxpl5_wire::{Message, NodeId};
 
 const UNKNOWN: Time = Time(u64::MAX);
 
-/// A snapshot of a message on a channel.
+/// A snapshot of a message that occupies a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSnapshot {
-    /// Number of the channel, from 0.
+    /// Number of the channel, counted from 0.
     pub channel: usize,
     /// Port of the sender.
     pub source: NodeId,
@@ -19,11 +19,11 @@ pub struct ChannelSnapshot {
     pub words: u32,
     /// Time at which the arbiter granted the channel.
     pub granted: Time,
-    /// Time at which the channel becomes free; `None` until a receiver with a FIFO has answered.
+    /// Time at which the channel becomes free. `None` means that the receiver, which has a FIFO, has not answered yet.
     pub ends_at: Option<Time>,
 }
 
-/// A message that occupies a channel.
+/// A message that occupies a channel at present.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageInFlight {
     pub(crate) source: NodeId,
@@ -33,8 +33,8 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word slots until the message ends, and the message until the receiver is told. Both are used only by
-    /// [`Ring::move_every_word`](crate::Ring::move_every_word).
+    /// Number of word slots until the message ends. `message` is the message itself until its receiver is told. Both
+    /// are used only by [`Ring::move_every_word`](crate::Ring::move_every_word).
     pub(crate) slots_left: u64,
     pub(crate) message: Option<Box<Message>>,
 }
@@ -43,16 +43,17 @@ pub(crate) struct MessageInFlight {
 #[derive(Clone, Debug)]
 pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
-    /// Time at which each channel becomes free; `UNKNOWN` for free channels and before the receiver's answer.
+    /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and before the receiver's
+    /// answer.
     ends_at: Vec<Time>,
-    /// Known end times with their channels, the earliest last.
+    /// Known end times of messages with their channels. The earliest end is the last element.
     due: Vec<(Time, usize)>,
     /// Bit set of the free channels.
     free: u64,
 }
 
 impl RingChannels {
-    /// Makes 1 to 64 free channels.
+    /// Makes `n` free channels, 1 to 64.
     pub(crate) fn new(n: usize) -> Self {
         Self {
             flights: vec![None; n],
@@ -74,7 +75,8 @@ impl RingChannels {
         self.flights.iter().all(Option::is_none)
     }
 
-    /// Puts a message on the lowest free channel and returns the channel's number. A free channel must exist.
+    /// Puts a message on the free channel with the lowest number and returns this number. At least one channel must be
+    /// free.
     pub(crate) fn occupy(&mut self, flight: MessageInFlight, ends_at: Option<Time>) -> usize {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
@@ -86,7 +88,7 @@ impl RingChannels {
         channel
     }
 
-    /// Sets the end time of the message on a channel, once for each message.
+    /// Sets the time at which the message on a channel ends. This function must be called once for each message.
     pub(crate) fn end_at(&mut self, channel: usize, at: Time) {
         let before = std::mem::replace(&mut self.ends_at[channel], at);
         debug_assert_eq!(before, UNKNOWN, "an end that is known stays");
@@ -95,22 +97,22 @@ impl RingChannels {
         self.due.insert(self.due.len() - earlier, (at, channel));
     }
 
-    /// Returns the earliest known end time.
+    /// Returns the earliest known end of a message.
     pub(crate) fn first_end(&self) -> Option<Time> {
         self.due.last().map(|end| end.0)
     }
 
-    /// Iterates over the known end times, the earliest first, with their messages.
+    /// Iterates over the known ends of messages, each with its message. The earliest end comes first.
     pub(crate) fn ends(&self) -> impl Iterator<Item = (Time, &MessageInFlight)> {
         self.due.iter().rev().filter_map(|(end, channel)| Some((*end, self.flight(*channel)?)))
     }
 
-    /// Returns the end time of the message on a channel, if it is known.
+    /// Returns the time at which the message on a channel ends, if this time is known.
     pub(crate) fn end(&self, channel: usize) -> Option<Time> {
         Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)
     }
 
-    /// Frees a channel whose message has ended. Returns the channel, the end time and the message.
+    /// Frees one channel whose message has ended by `now`. Returns the channel, the end time and the message.
     pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, MessageInFlight)> {
         let (ended, channel) = self.due.pop_if(|end| end.0 <= now)?;
         self.ends_at[channel] = UNKNOWN;
@@ -118,8 +120,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Ends one word slot of a channel and returns its message. [`RingChannels::put_back`] returns the message to the
-    /// channel.
+    /// Ends one word slot of a channel and returns the channel's message. The caller must return the message to the
+    /// channel by [`RingChannels::put_back`].
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
@@ -133,17 +135,17 @@ impl RingChannels {
         self.flights[channel].as_ref()
     }
 
-    /// Iterates over the messages that occupy channels, by channel.
+    /// Iterates over the messages that occupy channels, sorted by channel.
     pub(crate) fn flights(&self) -> impl Iterator<Item = &MessageInFlight> {
         self.flights.iter().flatten()
     }
 
-    /// Returns the message on a channel if its end is unknown.
+    /// Returns the message on a channel if its end is not known yet.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }
 
-    /// Iterates over snapshots of the messages on channels after `now`, by channel.
+    /// Iterates over snapshots of the messages that occupy channels after time `now`, sorted by channel.
     pub(crate) fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
         (0..self.flights.len()).filter_map(move |channel| {
             let ends_at = self.end(channel);

@@ -7,60 +7,65 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 /// An event of the ring.
 #[derive(Clone, Debug)]
 pub enum RingEvent {
-    /// A board passes a message to its port. Phase `Arrive`.
+    /// A board passes a message to its ring port. The event belongs to phase `Arrive` of the event queue.
     Request(Request),
-    /// A receiver with a FIFO answers an announcement with the time at which the last word enters. Phase `Arrive`.
+    /// A receiver with a FIFO answers an announcement: it gives the time at which the last word will enter the FIFO.
+    /// The event belongs to phase `Arrive` of the event queue.
     ///
     /// A time earlier than `first_word_at + words x word` is impossible. Such an answer is counted as a fault, and the
-    /// earliest time is used instead. If the answer comes after the sender could have been free, the sender becomes
-    /// free at once.
+    /// earliest possible time is used instead. If the answer comes after the sender could have been free, the sender
+    /// becomes free at once.
     Accept {
         /// Port of the receiver.
         destination: NodeId,
-        /// Time at which the last word has entered, including the stall.
+        /// Time at which the last word enters the receiver, including the stall.
         last_word_at: Time,
     },
-    /// Internal event of a ring that [moves every word](crate::Ring::move_every_word): a word slot ends. Phase
-    /// `Arrive`.
+    /// Internal event of a ring that [moves every word](crate::Ring::move_every_word): the time slot of a word ends.
+    /// The event belongs to phase `Arrive` of the event queue.
     Slot {
-        /// Number of the channel, from 0.
+        /// Number of the channel, counted from 0.
         channel: usize,
     },
-    /// Internal event: release ended messages, then grant waiting ones. Phase `Work`.
+    /// Internal event: frees the channels of ended messages, then grants channels to waiting messages. The event
+    /// belongs to phase `Work` of the event queue.
     Arbitrate,
 }
 
-/// A message with the options of its transfer.
+/// A request to send a message, with the options of the transfer.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// Message with source, destination and length in words.
+    /// Message to send, with source, destination and length in words.
     pub message: Message,
-    /// Number returned in [`RingOutput::Sent`] or [`RingOutput::Refused`]; with `None` the sender gets no answer.
+    /// Number that comes back in [`RingOutput::Sent`] or [`RingOutput::Refused`]. With `None` the sender gets no
+    /// answer.
     pub ticket: Option<u64>,
-    /// True if the destination stays reserved for this source afterwards, because more messages of the transfer follow.
-    /// The first message without `hold` ends the reservation. If none follows, the destination stays blocked, which
-    /// [`Ring::waiting`](crate::Ring::waiting) shows.
+    /// True if the destination stays reserved for this source after the message, because the transfer has more
+    /// messages. The first message without `hold` ends the reservation. If no such message follows, the destination
+    /// stays blocked, as [`Ring::waiting`](crate::Ring::waiting) shows.
     pub hold: bool,
-    /// Place among the messages that reach this port at the same instant, lowest first, because events of one instant
-    /// have no order. Messages of different instants keep their order in time.
+    /// Rank among the messages that reach the same port at the same instant, the lowest rank first. The rank is needed
+    /// because events of one instant have no order. Messages of different instants are sorted by time.
     pub order: u32,
 }
 
 /// An output of the ring.
 #[derive(Clone, Debug)]
 pub enum RingOutput {
-    /// Announcement to `message.destination`, which has a FIFO and answers with [`RingEvent::Accept`].
+    /// Announcement of a message to its receiver `message.destination`, which has a FIFO. The receiver answers with
+    /// [`RingEvent::Accept`].
     Announce {
-        /// Message that is coming.
+        /// Message that will arrive.
         message: Message,
-        /// Time at which the first word begins to arrive. The word can enter one `word` later.
+        /// Time at which the first word begins to arrive. The first word can enter the receiver one `word` later.
         first_word_at: Time,
-        /// Time of one word.
+        /// Time that the transfer of one word takes.
         word: Span,
     },
-    /// Delivery to `message.destination`, which is elastic: the last word has arrived.
+    /// Delivery of a message to its receiver `message.destination`, which accepts every word immediately. The last word
+    /// has arrived.
     Delivered(Message),
-    /// Answer to the sender of a message with a ticket: the last word was accepted.
+    /// Answer to the sender of a message with a ticket: the receiver has accepted the last word.
     Sent {
         /// Port of the sender.
         source: NodeId,
@@ -69,7 +74,7 @@ pub enum RingOutput {
     },
     /// Answer to the sender of a message with a ticket: the ring could not carry the message.
     Refused {
-        /// Sender as given in the message.
+        /// Port of the sender, as given in the message.
         source: NodeId,
         /// [`Request::ticket`] of the message.
         ticket: u64,
@@ -78,68 +83,68 @@ pub enum RingOutput {
     },
 }
 
-/// The reason why a ring cannot be built or a message cannot be carried.
+/// The reason why a ring cannot be built, or why a message cannot be sent.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RingError {
-    /// A number of the timing table is out of range.
+    /// A parameter of the timing table is out of range.
     #[error("ring timing: {0}")]
     Timing(#[from] ParameterError),
-    /// The ring would have no port.
+    /// The ring has no ports.
     #[error("a ring needs one port at least, found none")]
     NoNodes,
-    /// A message names a port that does not exist.
+    /// A message names a port that the ring does not have.
     #[error("there is no ring port {}: the ring has {n_nodes}, from 0", .node.0)]
     NoSuchNode {
-        /// Port in the message.
+        /// Port that the message names.
         node: NodeId,
-        /// Number of ports of the ring, numbered from 0.
+        /// Number of ports of the ring. Ports are numbered from 0.
         n_nodes: u16,
     },
-    /// A message has no words, or more than 1,024.
+    /// The length of a message is 0 or more than 1,024 words.
     #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
         /// Port of the sender.
         r#source: NodeId, // Raw, since `thiserror` takes a plain `source` for another error.
         /// Port of the receiver.
         destination: NodeId,
-        /// Length in words, without the overhead.
+        /// Length of the message in words, without the overhead.
         words: u32,
     },
-    /// A receiver answered without an announcement, or answered twice.
+    /// A receiver gave an answer without an announcement, or a second answer to an announcement.
     #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
         /// Port of the receiver.
         destination: NodeId,
     },
-    /// A receiver answered with a time before the last word can have arrived.
+    /// A receiver claimed to accept the last word at a time before this word could have arrived.
     #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
         /// Port of the receiver.
         destination: NodeId,
-        /// Earliest possible time.
+        /// Earliest time at which the last word can have arrived.
         expected: Time,
-        /// Time in the answer.
+        /// Time that the receiver gave in its answer.
         found: Time,
     },
-    /// A time given to the reference model is not a multiple of its tick.
+    /// A time given to the reference model is not a multiple of the model's tick.
     #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
-        /// Description of the time.
+        /// Description of the time that is not a multiple of the tick.
         what: &'static str,
-        /// Value of the time in picoseconds.
+        /// The time that is not a multiple of the tick, in picoseconds.
         found_ps: u64,
         /// Tick of the reference model.
         tick: Span,
     },
-    /// The reference model had not delivered all messages at the end of its time.
+    /// The run of the reference model ended before all messages were delivered.
     #[error("only {delivered} of {of} messages had been delivered at {until}")]
     Unfinished {
-        /// Number of messages whose last word was accepted.
+        /// Number of delivered messages: messages whose last word was accepted.
         delivered: usize,
-        /// Number of messages of the traffic.
+        /// Number of messages in the whole traffic.
         of: usize,
-        /// End of the run.
+        /// Time at which the run ended.
         until: Time,
     },
 }

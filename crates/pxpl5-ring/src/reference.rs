@@ -1,17 +1,18 @@
-//! The reference model of the ring, word by word: slow and obvious. The fast ring is tested against it.
+//! The reference model of the ring, word by word. The model is slow and obvious, and the fast ring is tested against
+//! it.
 //!
 //! Time advances tick by tick. Every tick has three steps, in this order:
 //!
 //! 1. Messages whose time has come join the queue of their source port.
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
-//!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next tick. When
+//!    message. If a word does not fit into its receiver, it stays in its slot and is offered again in the next tick. When
 //!    the last word has moved and the receiver has answered, channel and ports become free.
-//! 3. Heads of queues are granted while channels are free. The order is (time as head, source). A head needs a source
-//!    port with a free send channel and a free destination that is not reserved for another source. Messages to
-//!    receivers with a FIFO use at most `fifo_channels`.
+//! 3. The first messages of the queues are granted while channels are free. They are sorted by the time at which they
+//!    became first, then by source. A message needs a source port with a free send channel, and a free destination that
+//!    is not reserved for another source. Messages to receivers with a FIFO use at most `fifo_channels`.
 //!
-//! Hops only delay the word slots that a receiver sees against those of the sender. The model computes no end ahead and
-//! skips no event.
+//! Between boards, hops delay the word slots at the receiver against those at the sender. Hops have no other effect.
+//! The model computes no end ahead and skips no event.
 
 use crate::{RingError, RingTiming};
 use parameters::ParameterTable;
@@ -19,7 +20,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use std::collections::VecDeque;
 
-/// A message to be sent. Messages of one instant and source are sent in the order of the list.
+/// A message that the reference model will send. Messages with the same time and source are sent in the order of the
+/// list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedMessage {
     /// Time at which the board passes the message to its port.
@@ -28,18 +30,18 @@ pub struct PlannedMessage {
     pub source: NodeId,
     /// Port of the receiver.
     pub destination: NodeId,
-    /// Length in words, without the overhead, 1 to 1,024.
+    /// Length of the message in words, 1 to 1,024, without the overhead.
     pub words: u32,
-    /// True if the destination stays reserved for the source afterwards.
+    /// True if the destination stays reserved for the same source after this message.
     pub hold: bool,
 }
 
-/// Times and channel of a carried message.
+/// Channel of a message that was sent, and the times of its transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
-    /// Number of the channel, from 0.
+    /// Number of the channel, counted from 0.
     pub channel: usize,
-    /// Time at which channel and ports were granted.
+    /// Time at which the message was granted its channel and ports.
     pub granted: Time,
     /// Time at which the last word entered the receiver.
     pub last_word_at: Time,
@@ -47,19 +49,20 @@ pub struct CarriedMessage {
     pub released: Time,
 }
 
-/// Receivers of the reference model, which calls them word by word. Times are those at the receiver.
+/// The receivers in the reference model. The model calls these functions for every message and word, with times at the
+/// receiver.
 pub trait Receivers {
-    /// Returns true if the receiver accepts every word as it comes.
+    /// Returns true if the receiver is elastic: it accepts every word immediately.
     fn is_elastic(&self, destination: NodeId) -> bool;
 
-    /// Announces a message. Returns the time from the announcement to the receiver's answer.
+    /// Announces a message to its receiver. Returns the time that the receiver needs to answer.
     fn announced(&mut self, destination: NodeId, at: Time) -> Span;
 
-    /// Offers a word at the end of its slot. Returns true if the word enters now.
+    /// Offers a word to its receiver at the end of a word slot. Returns true if the receiver accepts the word now.
     fn takes_word(&mut self, destination: NodeId, at: Time) -> bool;
 }
 
-/// Receivers that accept every word as it comes.
+/// Receivers that accept every word immediately.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elastic;
 
@@ -77,16 +80,16 @@ impl Receivers for Elastic {
     }
 }
 
-/// The reference model: a ring whose time advances tick by tick, with the messages that it carries.
+/// The reference model: a ring whose time advances tick by tick. The messages are given in advance.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// For each source: numbers of the queued messages, and the time since which the first one is the head.
+    /// Queue of each source: indices of the waiting messages, and the time since which the first one has been first.
     queues: Vec<(VecDeque<usize>, Time)>,
-    /// Number of messages of each source on channels.
+    /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
@@ -94,7 +97,7 @@ pub struct SteppedRing<'a, R> {
     carried: Vec<Option<CarriedMessage>>,
 }
 
-/// A message on a channel.
+/// A message on a channel, with its remaining word slots.
 #[derive(Clone, Copy, Debug)]
 struct ChannelSlots {
     message: usize,
@@ -106,7 +109,7 @@ struct ChannelSlots {
 }
 
 impl<'a, R: Receivers> SteppedRing<'a, R> {
-    /// Makes a ring that will carry `traffic`.
+    /// Makes a ring that will send all messages of `traffic`.
     ///
     /// # Errors
     ///
@@ -141,7 +144,8 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         })
     }
 
-    /// Steps until all messages are delivered. Returns the times of each message, in the order of the traffic.
+    /// Advances tick by tick until all messages are delivered. Returns the times of each message, in the order of the
+    /// traffic.
     ///
     /// # Errors
     ///

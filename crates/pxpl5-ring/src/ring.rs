@@ -1,4 +1,4 @@
-//! Ports and arbiter of the ring.
+//! The ring's ports, and the arbiter that grants channels to messages.
 
 use crate::channels::{ChannelSnapshot, MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 type RingContext = Context<RingEvent, RingOutput>;
 
-/// The ring: its ports, channels and arbiter.
+/// The ring: its ports, its channels, and the arbiter that grants channels to messages.
 #[derive(Clone, Debug)]
 pub struct Ring {
     timing: RingTiming,
@@ -17,24 +17,26 @@ pub struct Ring {
     sources: Vec<SourcePort>,
     destinations: Vec<DestinationPort>,
     channels: RingChannels,
-    /// Number of messages on channels to receivers with a FIFO, at most `fifo_channels`.
+    /// Number of messages under way to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
-    /// Heads: the first messages of the queues whose source can send, in the order of grants.
+    /// First message of each queue whose source has a free send channel. The messages are sorted by the order of
+    /// grants.
     heads: Vec<QueueHead>,
-    /// Number of messages at the head of a queue whose receiver has a FIFO.
+    /// Number of messages in `heads` whose receiver has a FIFO.
     heads_to_fifos: u32,
-    /// Number of sources that send on as many channels as they can.
+    /// Number of sources that are sending on as many channels as they can use at the same time.
     at_limit: usize,
-    /// True if a channel or destination for which a message may wait has become free since the last grants.
+    /// True if a channel or destination has become free since the last grants, so that a waiting message may be
+    /// granted.
     unblocked: bool,
-    /// Instants at which an arbitration is scheduled.
+    /// Times at which an arbitration is scheduled.
     arbitrations: Vec<Time>,
-    /// True if every end of a message is an event, even if no message waits for it.
+    /// True if every end of a message causes an event, even if no other message waits for this end.
     watched: bool,
-    /// True if the ring moves every word of a message by an event of its own.
+    /// True if each word of a message causes an event of its own.
     word_by_word: bool,
     stats: RingStats,
-    /// Time for which each port received, overhead and stalls included.
+    /// Time that each port has spent receiving messages, including overhead and stalls.
     receiving: Vec<Span>,
     refusals: Refusals,
 }
@@ -42,7 +44,7 @@ pub struct Ring {
 #[derive(Clone, Debug, Default)]
 struct SourcePort {
     queue: VecDeque<QueuedRequest>,
-    /// Number of messages on channels, at most `source_channels`.
+    /// Number of messages that the source is sending on channels, at most `source_channels`.
     in_flight: u64,
 }
 
@@ -57,11 +59,12 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of messages at the head of a queue that wait for this destination.
+    /// Number of first messages of queues that wait for this destination.
     heads: u32,
 }
 
-/// The head of a source's queue, which waits for its grant. The first two fields give the order of grants.
+/// The first message of a source's queue, which waits for its grant. Messages are granted in the order of `since`, then
+/// of `source`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct QueueHead {
     since: Time,
@@ -70,7 +73,8 @@ struct QueueHead {
 }
 
 impl Ring {
-    /// Makes an empty ring of `n_nodes` ports. `elastic` returns true for receivers that accept every word as it comes.
+    /// Makes an empty ring of `n_nodes` ports. `elastic` must return true for receivers that accept every word
+    /// immediately.
     ///
     /// # Errors
     ///
@@ -101,18 +105,18 @@ impl Ring {
         })
     }
 
-    /// Makes every end of a message an event, so that [`Ring::busy_channels`] is correct after every event.
+    /// Makes every end of a message an event of its own. [`Ring::busy_channels`] is then correct after every event.
     pub const fn watch(&mut self) {
         self.watched = true;
     }
 
-    /// Moves every word of a message by an event of its own, instead of computing the message's end at its grant.
-    /// No time changes. Receivers with a FIFO still answer for whole messages.
+    /// Makes every word of a message an event of its own. Normally the end of a message is computed at its grant. The
+    /// times of messages stay the same. Receivers with a FIFO still answer for whole messages.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
     }
 
-    /// Handles one event at `context.now()`. Events and outputs that follow go to `context`.
+    /// Handles one event at the time of `context`. New events and outputs are passed to `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         match event {
             RingEvent::Request(request) => self.request(request, context),
@@ -132,7 +136,7 @@ impl Ring {
         self.arbitrate_at_next_end(context);
     }
 
-    /// Recomputes every counter of the ring and compares it.
+    /// Recomputes every counter of the ring. Returns true if the counters are correct.
     fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
         // One pass over the heads: a scan for each port would take most of the time of a test run.
@@ -157,51 +161,53 @@ impl Ring {
         &self.timing
     }
 
-    /// Returns the number of ports, numbered from 0.
+    /// Returns the number of ports. Ports are numbered from 0.
     #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16
     }
 
-    /// Returns sums over all ended messages, up to the last grant or [`Ring::settle`].
+    /// Returns the statistics of the ring. They cover all messages that had ended at the last grant or
+    /// [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
     }
 
-    /// Returns the time for which a port has received messages that have ended, overhead and stalls included; zero for a port that the
-    /// ring does not have.
+    /// Returns the time that a port has spent receiving messages, including overhead and stalls. Only ended messages
+    /// count. The result is zero for a port that does not exist.
     #[must_use]
     pub fn receiving(&self, port: NodeId) -> Span {
         self.receiving.get(usize::from(port.0)).copied().unwrap_or(Span::ZERO)
     }
 
-    /// Returns the messages and answers that were refused.
+    /// Returns the number of refused messages and answers, and the reason for the first refusal.
     #[must_use]
     pub const fn refusals(&self) -> &Refusals {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. The number is up to date after each event of a ring that is
-    /// [watched](Ring::watch).
+    /// Returns the number of occupied channels. After [`Ring::watch`] was called, the number is correct after every
+    /// event.
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
     }
 
-    /// Returns snapshots of the messages on channels at an instant that is not before the last event, by channel. The
-    /// ring stays unchanged.
+    /// Returns snapshots of the messages on channels at time `now`, sorted by channel. `now` must not be earlier than
+    /// the last event. The ring stays unchanged.
     pub fn channel_snapshots(&self, now: Time) -> impl Iterator<Item = ChannelSnapshot> + '_ {
         self.channels.channel_snapshots(now)
     }
 
-    /// Returns true if no message is in flight or waits, as of the last grant or [`Ring::settle`].
+    /// Returns true if no message is on a channel or waits for one. The state is that of the last grant or
+    /// [`Ring::settle`].
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
     }
 
-    /// Checks that the ring could carry a message.
+    /// Checks that the ring can carry a message.
     ///
     /// # Errors
     ///
@@ -216,7 +222,8 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Returns the messages that wait at the head of their queue or for their receiver's answer, by source.
+    /// Returns the messages that wait for a grant at the head of their queue, or for an answer of their receiver. The
+    /// messages are sorted by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -225,7 +232,7 @@ impl Ring {
         all
     }
 
-    /// Returns the waiting messages as lines for a deadlock report, with ports as names of the boards.
+    /// Returns the waiting messages as lines of a deadlock report. Ports are written as the names of their boards.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         self.waiting().iter().map(|message| message.blocked(port_name)).collect()
@@ -261,7 +268,8 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Schedules an arbitration, unless an earlier one is scheduled. Each arbitration schedules the next one.
+    /// Schedules an arbitration at time `at`, unless an earlier one is scheduled already. Each arbitration schedules
+    /// the next one.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
@@ -269,7 +277,8 @@ impl Ring {
         }
     }
 
-    /// Schedules an arbitration at the next end of a message that matters to a waiting head or to a watched ring.
+    /// Schedules an arbitration at the next relevant end of a message. An end is relevant if a waiting message needs
+    /// it, or if [`Ring::watch`] was called.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         // A source at its limit or a missing channel makes every end matter.
         let any_end = self.watched || self.at_limit > 0;
@@ -285,13 +294,13 @@ impl Ring {
         }
     }
 
-    /// Returns the first end of a message to a receiver that a head waits for.
+    /// Returns the earliest time at which a destination becomes free for which the first message of a queue waits.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
     }
 
-    /// Returns true if a head waits for any channel to become free.
+    /// Returns true if the first message of a queue waits because no channel is free.
     fn is_channel_missing(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)
@@ -324,8 +333,8 @@ impl Ring {
         self.heads_to_fifos -= u32::from(!destination.elastic);
     }
 
-    /// Frees channels and ports of all messages that have ended by `now`, and adds them to the sums. The ring also does
-    /// this before every grant.
+    /// Frees the channels and ports of all messages that have ended by `now`, and adds the messages to the statistics.
+    /// The ring also does this before every grant.
     pub fn settle(&mut self, now: Time) {
         let lacked_channel = self.is_channel_missing();
         while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
@@ -351,10 +360,10 @@ impl Ring {
         }
     }
 
-    /// Grants all heads that can go, in one pass. A grant frees nothing, and the head that follows it comes later in
-    /// the order.
-    /// If nothing became free since the last pass, earlier heads still cannot go, and only heads of this instant are
-    /// checked.
+    /// Grants channels to all waiting messages that can be sent, in one pass. One pass is enough, because a grant frees
+    /// nothing, and the next message of the same source comes later in the order. If nothing became free since the last
+    /// pass, earlier messages still cannot be sent. Only messages that reached the head of their queue at this instant
+    /// are then checked.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
@@ -411,9 +420,9 @@ impl Ring {
         }
     }
 
-    /// Puts a message on a channel and outputs its delivery or announcement.
-    /// For an elastic receiver the end is known at once, for others at the answer. A ring that moves every word finds
-    /// the end by its words.
+    /// Puts a message on a channel and outputs its delivery or its announcement. If the receiver accepts every word
+    /// immediately, the end of the message is known at once. Otherwise the receiver's answer gives the end. A ring with
+    /// an event for every word finds the end by its words.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;
@@ -437,8 +446,8 @@ impl Ring {
         channel
     }
 
-    /// Ends a slot of overhead or of a word. A receiver with a FIFO gets the announcement after the first slot, an
-    /// elastic receiver gets the message after the last.
+    /// Ends the time slot of one word, or of one word of overhead. A receiver with a FIFO gets the announcement after
+    /// the first slot. An elastic receiver, which accepts every word immediately, gets the message after the last slot.
     fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
         // The next word slot follows at once.
@@ -493,7 +502,7 @@ impl Ring {
         }
     }
 
-    /// Returns the message announced to a receiver that has not answered, with its channel.
+    /// Returns the message that was announced to a receiver but not answered yet, with the number of its channel.
     fn unanswered(&self, destination: NodeId) -> Option<(usize, &MessageInFlight)> {
         let channel = self.destinations.get(usize::from(destination.0))?.channel?;
         Some((channel, self.channels.unanswered(channel)?))
@@ -522,7 +531,7 @@ fn port_name(node: NodeId) -> String {
     format!("ring port {}", node.0)
 }
 
-/// Outputs the delivery of a message to an elastic receiver, and the answer to its sender.
+/// Outputs the delivery of a message to a receiver that accepts every word immediately. The sender is notified too.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
     notify_sender(sender, at, context);
@@ -535,14 +544,14 @@ fn notify_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mu
 }
 
 impl QueuedRequest {
-    /// Returns the sort key of a port's queue.
+    /// Returns the key by which the messages in a port's queue are sorted.
     const fn order(&self) -> (Time, u32) {
         (self.at, self.request.order)
     }
 }
 
 impl SourcePort {
-    /// Inserts a message into the queue and returns its place.
+    /// Inserts a message into the queue and returns its index there.
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;

@@ -1,27 +1,27 @@
-//! Statistics and waiting messages of the ring, for reports.
+//! Statistics of the ring and lists of waiting messages, for reports.
 
 use crate::RingError;
 use pxpl5_sim::{Blocked, Span, Time};
 use pxpl5_wire::NodeId;
 
-/// Sums over all messages that have ended.
+/// Statistics of all messages that have ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RingStats {
     /// Time for which each channel was occupied, including overhead and stalls.
     pub channel_busy: Vec<Span>,
     /// Number of messages whose channel has become free.
     pub messages: u64,
-    /// Words of the ended messages, without the overhead.
+    /// Number of words in the ended messages, without the overhead.
     pub words: u64,
-    /// Sum of the times from request to grant.
+    /// Sum of all messages' times from request to grant.
     pub waiting: Span,
-    /// Longest time from a request to its grant.
+    /// Longest time of a message from its request to its grant.
     pub longest_wait: Span,
-    /// Sum of the stalls by full receivers.
+    /// Sum of the times for which full receivers have stalled messages.
     pub stalled: Span,
 }
 
-/// Messages and answers that were refused.
+/// Refused messages and answers: their number, and the reason for the first one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
     /// Number of refused messages and answers since the ring was made.
@@ -37,7 +37,7 @@ impl Refusals {
     }
 }
 
-/// A message that waits for its grant or for its receiver.
+/// A message that waits for its grant or for the answer of its receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
     /// Port of the sender.
@@ -46,29 +46,29 @@ pub struct WaitingMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,
-    /// Time at which the message became the head of its queue, or was granted.
+    /// Time at which the message became the first of its queue, or was granted.
     pub since: Time,
-    /// Condition for the message to continue.
+    /// Condition that the message waits for.
     pub reason: WaitReason,
 }
 
-/// The condition that a message waits for.
+/// The condition that a message waits for before it can continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitReason {
-    /// The receiver has not answered the announcement.
+    /// The receiver must answer the announcement of the message.
     Acceptance,
-    /// The receiver is busy with a message from this port.
+    /// The receiver is busy with a message from the port given here.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for an unfinished transfer from this port.
+    /// The receiver is reserved for an unfinished transfer from the port given here.
     DestinationReserved(NodeId),
     /// All channels that the message may use are occupied.
     Channel,
-    /// The message can go and will be granted at this instant.
+    /// The message can be sent, and the arbiter will grant it at this instant.
     Arbitration,
 }
 
 impl WaitingMessage {
-    /// Returns a line for a deadlock report. `name` returns the name of a board.
+    /// Returns the waiting message as a line of a deadlock report. `name` must return the name of a board.
     #[must_use]
     pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
         let to = name(self.destination);

@@ -1,42 +1,42 @@
-//! Every number of the ring.
+//! All timing parameters of the ring.
 
 use pxpl5_sim::Span;
 use pxpl5_wire::NodeId;
 
 parameters::parameter_table! {
-    /// Times and sizes of the ring.
+    /// Times, sizes and channel counts of the ring.
     pub struct RingTiming {
-        /// Time of one word on a channel.
+        /// Time in which a channel moves one word.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
-        /// Overhead of a message in word times.
+        /// Overhead of each message, in word times.
         overhead_words: 16, "words", Derived, 16..=16 in 0..=1_000_000, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
-        /// Latency from one board to the next.
+        /// Latency from one board to the next board on the ring.
         hop_ns: 50, "ns", Assumed, 0..=200 in 0..=1_000_000, "one word time: every board latches a word once";
-        /// Number of channels. Each carries one message at a time.
+        /// Number of channels of the ring. Each channel carries one message at a time.
         channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
-        /// Channels that one board can send on at a time, to different receivers.
+        /// Greatest number of channels on which one board can send at the same time, to different receivers.
         source_channels: 2, "channels", Assumed, 1..=2 in 1..=64, "no source gives the value. At most 2, because the memory bus of a GP moves 64 bits every second clock of 40 MHz. These 160 MB/s are two channels of 80 MB/s. At least 1, because the processor also needs the bus. Other boards send at most a copy and its acknowledgement at the same time";
-        /// Channels that messages to receivers with a FIFO may use together. The others are left to receivers that
-        /// never stall.
+        /// Greatest number of channels that all messages to receivers with a FIFO can use together. The other channels
+        /// are left to receivers that never stall.
         fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers. If full FIFOs could block all 8 channels, the pixels of the renderers would wait forever. 6 leaves one channel for each of two frame buffers";
     }
 }
 
 impl RingTiming {
-    /// Returns the time of one word.
+    /// Returns the time in which a channel moves one word.
     #[must_use]
     pub const fn word(&self) -> Span {
         Span::from_ns(self.word_ns)
     }
 
-    /// Returns the time for which a message without stalls occupies its channel and ports.
+    /// Returns the time for which a message of `words` words occupies its channel and ports, without stalls.
     #[must_use]
     pub const fn occupancy(&self, words: u32) -> Span {
         Span::from_ns((self.overhead_words + words as u64) * self.word_ns)
     }
 
-    /// Returns the latency from one port to another of a ring of `n_nodes`. A message from a port to itself goes once
-    /// round.
+    /// Returns the latency from one port to another on a ring of `n_nodes` ports. A message from a port to itself
+    /// travels once around the ring.
     #[must_use]
     pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
         let from = u64::from(source.0);

@@ -1,9 +1,9 @@
-//! Clocks whose edges never drift.
+//! Clocks whose edges are exact: rounding errors do not accumulate.
 
 use crate::{Span, Time};
 use serde::{Deserialize, Serialize};
 
-/// A number of cycles of one clock. The type is used only within the crate that owns the clock.
+/// A number of cycles of one clock. Only the crate that owns the clock should use this type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cycles(pub u64);
 
@@ -17,8 +17,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Makes a clock of period `numerator_ps / denominator`. Returns `None` unless both are positive and the period is
-    /// at least a picosecond.
+    /// Makes a clock whose period is `numerator_ps / denominator` picoseconds. Returns `None` unless both numbers are
+    /// positive and the period is at least one picosecond.
     #[must_use]
     pub const fn new(numerator_ps: u64, denominator: u64) -> Option<Self> {
         if denominator == 0 || numerator_ps < denominator {
@@ -27,13 +27,13 @@ impl Clock {
         Some(Self { numerator_ps, denominator })
     }
 
-    /// Makes a clock of a frequency in hertz. Returns `None` for zero or more than a terahertz.
+    /// Makes a clock from its frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
     #[must_use]
     pub const fn from_hz(hz: u64) -> Option<Self> {
         Self::new(1_000_000_000_000, hz)
     }
 
-    /// Returns the time of edge `n`, or [`Time::END`] if the edge lies after the end of time.
+    /// Returns the time of edge `n`, or [`Time::END`] if the edge would come after the end of time.
     #[must_use]
     #[inline]
     pub const fn edge(&self, n: u64) -> Time {
@@ -43,13 +43,14 @@ impl Clock {
         }
     }
 
-    /// Returns the time of any edge with 128-bit arithmetic, which takes several times as long as 64 bits.
+    /// Returns the time of edge `n` with 128-bit arithmetic, which needs several times as much host time as 64-bit
+    /// arithmetic.
     const fn edge_of_long(&self, n: u64) -> Time {
         let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
         if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }
     }
 
-    /// Returns the number of the first edge at or after `time`.
+    /// Returns the number of the first clock edge at or after `time`.
     #[must_use]
     pub const fn edge_at_or_after(&self, time: Time) -> u64 {
         // The division rounds down, so the edge may still lie before `time`.
@@ -60,7 +61,7 @@ impl Clock {
         n
     }
 
-    /// Returns the duration of `cycles`, counted from edge 0 and rounded down to a picosecond.
+    /// Returns the duration of `cycles` clock cycles from edge 0 on, rounded down to a picosecond.
     #[must_use]
     pub const fn span(&self, cycles: Cycles) -> Span {
         Span(self.edge(cycles.0).0)

@@ -1,10 +1,11 @@
-//! The interface of a device to the simulation during one event, and a test bench for a single device.
+//! The interface of a device to the simulation during one event. Also a test bench for a single device.
 
 use crate::{EventQueue, Phase, Span, Time};
 
-/// Collects the events that a device schedules for itself, and its outputs.
+/// The events that a device schedules for itself, and the outputs of the device.
 ///
-/// `E` is the device's own event type, `O` its output type. The wiring drains both lists after each event.
+/// `E` is the device's own event type, `O` its output type. After each event, the owner of the devices removes both
+/// lists.
 #[derive(Debug)]
 pub struct Context<E, O> {
     now: Time,
@@ -19,41 +20,41 @@ impl<E, O> Default for Context<E, O> {
 }
 
 impl<E, O> Context<E, O> {
-    /// Sets the time of the next event to handle and returns the context. The buffers keep their capacity.
+    /// Sets the current time for the next event and returns the context. The lists keep their allocated memory.
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
         self
     }
 
-    /// Returns the time of the current event.
+    /// Returns the time of the event that is being handled.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
-    /// Schedules an event of the same device.
+    /// Schedules an event for the same device.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         self.own.push((time, phase, event));
     }
 
-    /// Schedules an event of the same device after a span, in phase `Work`.
+    /// Schedules an event for the same device, `span` after the current time, in phase `Work`.
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
     }
 
-    /// Adds an output of the device at `time`.
+    /// Adds an output of the device with the time at which it leaves the device.
     pub fn output(&mut self, time: Time, output: O) {
         self.outputs.push((time, output));
     }
 
-    /// Removes and returns the events scheduled since the last call.
+    /// Removes and returns the events that were scheduled since the last call.
     pub fn drain_events(&mut self) -> std::vec::Drain<'_, (Time, Phase, E)> {
         self.own.drain(..)
     }
 
-    /// Removes the events scheduled since the last call and passes them to `take`, in order. Usually there is at most
-    /// one.
+    /// Removes the events that were scheduled since the last call and passes them to `take`, in order. Most calls find
+    /// at most one event.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
         // The usual case of one event needs no iterator.
@@ -65,28 +66,28 @@ impl<E, O> Context<E, O> {
         }
     }
 
-    /// Returns true if there is no output since the last [`Context::drain_outputs`].
+    /// Returns true if the device made no output since the last [`Context::drain_outputs`].
     #[must_use]
     pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()
     }
 
-    /// Removes and returns all outputs.
+    /// Removes and returns all outputs of the device.
     pub fn drain_outputs(&mut self) -> std::vec::Drain<'_, (Time, O)> {
         self.outputs.drain(..)
     }
 }
 
-/// A board that cannot continue, for the report of a deadlock.
+/// A board that cannot continue, as a line of a deadlock report.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Blocked {
     /// Name of the board in reports, such as "GP 3".
     pub board: String,
-    /// Condition that the board waits for, and the board that must cause it.
+    /// Description of the condition that the board waits for, and of the board that must cause it.
     pub waits_for: String,
 }
 
-/// A test bench for one device: the test feeds events and reads outputs with their times.
+/// A test bench for one device. The test schedules events for the device and reads its outputs with their times.
 #[derive(Debug)]
 pub struct TestBench<E, O> {
     queue: EventQueue<E>,
@@ -108,7 +109,7 @@ impl<E, O> TestBench<E, O> {
         Self::default()
     }
 
-    /// Returns the event queue, for example to shuffle ties or to read the time.
+    /// Returns the event queue of the bench, for example to shuffle events or to read the current time.
     pub fn queue(&mut self) -> &mut EventQueue<E> {
         &mut self.queue
     }
@@ -118,7 +119,7 @@ impl<E, O> TestBench<E, O> {
         self.queue.schedule(time, phase, event);
     }
 
-    /// Handles all events up to and including `until`.
+    /// Handles all events up to and including time `until`.
     pub fn run_until(&mut self, until: Time, mut handle: impl FnMut(E, &mut Context<E, O>)) {
         while self.queue.next_time().is_some_and(|time| time <= until) {
             let Some((now, _, event)) = self.queue.next_event() else {

@@ -1,13 +1,13 @@
 //! A heap with four children per node. This heap is half as deep as a binary heap, and the children of a node are
 //! adjacent in memory.
 
-/// The sort key of a heap, the least first.
+/// A type with a sort key. The heap returns the element with the least key first.
 pub(crate) trait Keyed: Copy {
-    /// Returns the complete order in one number, so that a comparison is one subtraction.
+    /// Returns the sort key as one number, so that the host compares two keys by one subtraction.
     fn key(&self) -> u128;
 }
 
-/// A priority queue with the least key first.
+/// A priority queue that returns the element with the least key first.
 #[derive(Debug)]
 pub(crate) struct QuadHeap<T> {
     items: Vec<T>,
@@ -58,7 +58,7 @@ impl<T: Keyed> QuadHeap<T> {
         Some(first)
     }
 
-    /// Returns the least of a node's children, with its index.
+    /// Returns the child of a node that has the least key, with its index.
     fn least_child(&self, place: usize) -> Option<(usize, T)> {
         let begin = place * CHILDREN + 1;
         let end = self.items.len().min(begin + CHILDREN);

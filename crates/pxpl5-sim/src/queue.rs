@@ -1,25 +1,26 @@
-//! The event queue. The crate's documentation has its ordering contract.
+//! The event queue of the simulation. The documentation of the crate states the order of events.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
 use std::collections::VecDeque;
 
-/// The three steps of one instant.
+/// The three phases of one instant. All events of a phase are handled before the next phase begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Phase {
-    /// Devices store the inputs that have arrived.
+    /// Devices store the inputs that have arrived at this instant.
     Arrive,
-    /// Boards act on the stored inputs.
+    /// Devices act on the stored inputs.
     Work,
-    /// Probes read the state and change nothing.
+    /// Observers read the state and change nothing.
     Observe,
 }
 
-/// The time, order and slot of a waiting event: 24 bytes, so that the heap moves little data.
+/// The time, order and storage slot of a waiting event. The 24 bytes are small, so that the heap moves little data.
 #[derive(Clone, Copy, Debug)]
 struct Due {
     time: Time,
-    /// Phase in the upper two bits, then the order of scheduling or a hash of it.
+    /// The phase of the event in the upper two bits. Below it is the number of the scheduling call, or a hash of this
+    /// number.
     order: u64,
     slot: u32,
 }
@@ -32,22 +33,25 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Capacity of the sorted list before the heap. A longer list costs more than the heap.
+/// Greatest length of the sorted list of early events. A longer list would take more host time than the heap.
 const NEAR: usize = 16;
 
-/// Returns a key above the keys of all work at an instant: the first key of the instant's observations.
+/// Returns a sort key that is greater than the keys of all events in phase `Work` at `now`. Keys of phase `Observe` are
+/// not smaller.
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
 }
 
-/// Events in the order of (time, phase). Ties are in the order of scheduling or shuffled.
+/// A queue of events in the order of time, then phase. Events with equal time and phase come in the order of
+/// scheduling, or shuffled.
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// Earliest events, at most [`NEAR`], the next one last. If few events wait, none goes through the heap.
+    /// The earliest events, at most [`NEAR`] of them, the next event last. If only few events wait, none of them uses
+    /// the heap.
     near: Vec<Due>,
-    /// Work of the current instant that was scheduled during it, in order. Such events need no sorting. Unused if ties
-    /// are shuffled.
+    /// Events in phase `Work` that were scheduled for the current instant during this instant. They need no sorting.
+    /// The list is unused if events are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
@@ -74,13 +78,14 @@ impl<E> Default for EventQueue<E> {
 }
 
 impl<E> EventQueue<E> {
-    /// Makes an empty queue at time zero.
+    /// Makes an empty queue. The current time is zero.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Orders later events of the same instant and phase by a hash with `seed`.
+    /// Shuffles events of the same instant and phase: a hash with `seed` determines their order. Only events scheduled
+    /// after this call are shuffled.
     pub fn shuffle_ties(&mut self, seed: u64) {
         self.shuffle = Some(seed);
     }
@@ -89,7 +94,8 @@ impl<E> EventQueue<E> {
     ///
     /// # Panics
     ///
-    /// If `time` is in the past, because a device has violated the ordering contract. If 2^32 events wait.
+    /// If `time` is earlier than the current time, because the caller has violated the ordering contract. Also if 2^32
+    /// events are waiting.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
         // Work for the current instant comes after all other work of the instant, so it needs no sorting.
@@ -126,8 +132,8 @@ impl<E> EventQueue<E> {
         self.near.pop().or_else(|| self.heap.pop())
     }
 
-    /// Returns true if the next event is in `soon`. Arrivals of the instant, and work scheduled before the instant,
-    /// come first.
+    /// Returns true if the next event is in `soon`. Events in phase `Arrive` of this instant, and events in phase
+    /// `Work` that were scheduled before this instant, come first.
     fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
@@ -142,7 +148,7 @@ impl<E> EventQueue<E> {
         u32::try_from(self.events.len() - 1).expect("fewer than 2^32 events wait")
     }
 
-    /// Removes and returns the next event, and advances the current time to it.
+    /// Removes and returns the next event. The current time becomes the time of this event.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
         if self.is_current_work_next(self.first()) {
             return self.take_current_work().map(|event| (self.now, Phase::Work, event));
@@ -157,7 +163,7 @@ impl<E> EventQueue<E> {
         Some((due.time, phase, event))
     }
 
-    /// Removes and returns the next event if it is before `end`, and advances the current time to it.
+    /// Removes and returns the next event if its time is before `end`. The current time becomes the time of this event.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
         if self.is_current_work_next(first) {
@@ -176,7 +182,7 @@ impl<E> EventQueue<E> {
         self.soon.pop_front()
     }
 
-    /// Removes an event from its slot and advances the current time to it.
+    /// Removes an event from its storage slot. The current time becomes the time of this event.
     fn take(&mut self, due: Due) -> Option<E> {
         self.now = due.time;
         self.popped += 1;
@@ -184,12 +190,12 @@ impl<E> EventQueue<E> {
         self.events[due.slot as usize].take()
     }
 
-    /// Iterates over all waiting events, in no particular order.
+    /// Iterates over all waiting events, in unspecified order.
     pub fn pending(&self) -> impl Iterator<Item = &E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// Returns the time of the next event; `None` if no event waits.
+    /// Returns the time of the next event, or `None` if no event is waiting.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
@@ -209,13 +215,13 @@ impl<E> EventQueue<E> {
         Some((due.time, self.events[due.slot as usize].as_ref()?))
     }
 
-    /// Returns the current time, which is the time of the last removed event.
+    /// Returns the current time: the time of the last removed event.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
     }
 
-    /// Returns the number of removed events.
+    /// Returns the number of events that were removed so far.
     #[must_use]
     pub const fn events_taken(&self) -> u64 {
         self.popped

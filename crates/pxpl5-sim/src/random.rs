@@ -2,15 +2,17 @@
 
 use crate::trace::{INCREMENT, mix};
 
-/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014). The
-/// generator returns 2^64 numbers of 64 bits, each once, and is for tests and random lists, and not for cryptography.
+/// The generator SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014). The sequence
+/// has 2^64 numbers of 64 bits, and each number occurs once. The generator suits tests and random lists, but not
+/// cryptography.
 #[derive(Clone, Copy, Debug)]
 pub struct SplitMix64 {
     state: u64,
 }
 
 impl SplitMix64 {
-    /// Makes the generator with a seed. All seeds give the same cyclic sequence, starting at different places.
+    /// Makes the generator with a seed. All seeds give the same cyclic sequence, but each seed starts at another
+    /// position.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
@@ -23,7 +25,8 @@ impl SplitMix64 {
         bits
     }
 
-    /// Returns a number from 0 to `n` - 1, with a bias below `n` / 2^64.
+    /// Returns a random number from 0 to `n` - 1. The bias, the deviation from equal probabilities, is below `n` /
+    /// 2^64.
     ///
     /// # Panics
     ///
@@ -32,7 +35,7 @@ impl SplitMix64 {
         self.bits() % n
     }
 
-    /// Returns a number of [0, 1) in steps of 2^-24, each of which is exact in `f32`.
+    /// Returns a random number from 0 to below 1, in steps of 2^-24. `f32` can represent every step exactly.
     pub const fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u32 << 24) as f32
     }

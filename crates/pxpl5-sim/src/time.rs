@@ -1,17 +1,17 @@
-//! Instants and differences of simulated time.
+//! Instants and durations of simulated time.
 //!
-//! Time ends after 2^64 ps (213 days). Later instants become [`Time::END`], which no run reaches, so events there never
-//! happen. No arithmetic wraps round to an earlier instant.
+//! Time ends after 2^64 ps (213 days). All later instants become [`Time::END`], which no run reaches. Events at this
+//! time never happen. No arithmetic wraps around to an earlier instant.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// An instant of simulated time: picoseconds since the machine was switched on.
+/// An instant of simulated time, in picoseconds since the machine was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Time(pub u64);
 
-/// A difference of two instants in picoseconds.
+/// A duration of simulated time, in picoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Span(pub u64);
 
@@ -19,10 +19,10 @@ impl Time {
     /// The start of simulated time.
     pub const ZERO: Self = Self(0);
 
-    /// The end of simulated time, which no run reaches.
+    /// The end of simulated time. No run reaches this instant.
     pub const END: Self = Self(u64::MAX);
 
-    /// Returns the time since `earlier`, or zero if `earlier` is later.
+    /// Returns the duration from `earlier` to this instant, or zero if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Span {
         Span(self.0.saturating_sub(earlier.0))
@@ -32,19 +32,19 @@ impl Time {
 impl Span {
     pub const ZERO: Self = Self(0);
 
-    /// Makes a span of whole nanoseconds.
+    /// Makes a duration of `ns` nanoseconds.
     #[must_use]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
-    /// Makes a span of whole microseconds.
+    /// Makes a duration of `us` microseconds.
     #[must_use]
     pub const fn from_us(us: u64) -> Self {
         Self(us.saturating_mul(1_000_000))
     }
 
-    /// Returns the span in milliseconds, for reports only.
+    /// Returns the duration in milliseconds, rounded. Use the result only in reports.
     #[must_use]
     pub fn as_ms(self) -> f64 {
         self.0 as f64 * 1e-9

@@ -1,4 +1,4 @@
-//! A hash of all events of a run, independent of the order within an instant.
+//! A hash of all events of a run. The order of events within an instant does not change the hash.
 
 use crate::Time;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,8 @@ use std::fmt;
 /// The increment of SplitMix64: 2^64 / golden ratio, made odd.
 pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Mixes 64 bits into 64 well-spread bits (the finaliser of SplitMix64, a bijection).
+/// Mixes 64 bits: each input bit affects about half of the output bits. The function is the finaliser of SplitMix64, a
+/// bijection.
 #[must_use]
 pub const fn mix(value: u64) -> u64 {
     let a = value.wrapping_add(INCREMENT);
@@ -16,15 +17,15 @@ pub const fn mix(value: u64) -> u64 {
     c ^ (c >> 31)
 }
 
-/// Sum of the hashes of all records (time, facts).
+/// Sum of the hashes of all records. A record is the time of an event with numbers that describe the event.
 ///
 /// The sum does not depend on the order of simultaneous events, which has no meaning. The sum depends on every time and
-/// every fact.
+/// every number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct TraceHash(pub u64);
 
 impl TraceHash {
-    /// Adds one record: the time and the facts of an event.
+    /// Adds one record: the time of an event, and the numbers that describe the event.
     pub fn record(&mut self, time: Time, facts: &[u64]) {
         let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);

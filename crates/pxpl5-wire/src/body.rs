@@ -1,11 +1,11 @@
-//! Messages and their contents.
+//! Messages on the ring and their contents.
 
 use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, TriangleBatch, Word};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A message on one channel of the ring.
+/// A message from one ring port to another.
 #[derive(Clone, Debug)]
 pub struct Message {
     /// Port of the board that sends the message.
@@ -21,28 +21,30 @@ pub struct Message {
 /// The content of a message.
 #[derive(Clone, Debug)]
 pub enum Body {
-    /// Commands for a renderer, in the order of their execution.
+    /// Commands for a renderer, in the order in which the renderer executes them.
     Commands(CommandList),
-    /// Part of a region's pixels, sent to a frame buffer.
+    /// Pixels of a part of a region, sent to a frame buffer.
     Pixels(RegionPixels),
-    /// Words between two programs, defined by the firmware.
+    /// Words sent from program to program. The firmware defines their meaning.
     Words(Arc<[Word]>),
 }
 
-/// Commands for a renderer, in order.
+/// A list of commands for a renderer, in order.
 #[derive(Clone, Debug)]
 pub struct CommandList {
-    /// Kinds of the commands in order, as runs. The time of the list depends only on these.
+    /// Kinds of the commands, in order; successive commands of one kind form one entry. The time of the list depends
+    /// only on these entries.
     pub runs: Vec<CommandRun>,
-    /// Region context of pixel memory on which all commands of this list work.
+    /// Region context, a part of pixel memory, on which all commands of this list work.
     pub context: u8,
-    /// One order for every command that copies a region, in the order of the commands.
+    /// Parameters of each copy command in the list, in order.
     pub copies: Vec<CopyOrder>,
-    /// Command words, computed on demand; `None` if no pixel of the picture will be read.
+    /// Command words, computed on demand. `None` means that no pixel of the picture will be read.
     pub content: Option<CommandContent>,
 }
 
-/// The command words of a message, computed on demand. All messages of a region share one source of words.
+/// The command words of a message, computed on demand. All messages of a region share one source, which computes the
+/// words.
 #[derive(Clone, Debug)]
 pub struct CommandContent {
     words: Arc<dyn CommandWords>,
@@ -50,7 +52,8 @@ pub struct CommandContent {
 }
 
 impl CommandContent {
-    /// Makes the content of part `part` (from 0) of a source of command words.
+    /// Makes the content of one message. `part` is the number of the message, counted from 0, among those of the source
+    /// `words`.
     #[must_use]
     pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
         Self { words, part }
@@ -61,7 +64,8 @@ impl CommandContent {
         self.words.append_words(self.part, out);
     }
 
-    /// Passes the commands that can touch their region to `out` ([`CommandWords::append_visible`]).
+    /// Passes the commands of the message to `out`. Primitives that touch no pixel of the region can be left out
+    /// ([`CommandWords::append_visible`]).
     pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_visible(self.part, out)
     }
@@ -70,19 +74,19 @@ impl CommandContent {
 /// The parameters of a copy command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyOrder {
-    /// Place of the region in a frame buffer.
+    /// Frame buffer and region that receive the pixels.
     pub target: CopyTarget,
-    /// Region context of the pixel memory that holds the region.
+    /// Region context, a part of pixel memory, that holds the pixels.
     pub context: u8,
-    /// Path of the colours to the frame buffer.
+    /// Path that the colours take to the frame buffer.
     pub way: CopyPath,
-    /// Data that are sent for each pixel.
+    /// Kind of data that is sent for each pixel.
     pub content: CopyContent,
-    /// Port that gets a message of [`COPY_ACKNOWLEDGEMENT_WORDS`] when the last pixel has arrived.
+    /// Port that is notified after the last pixel has arrived, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`] words.
     pub acknowledge: Option<NodeId>,
 }
 
-/// The data that a copy sends for each pixel.
+/// The kind of data that a copy sends for each pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyContent {
     /// One word per pixel: its colour.
@@ -95,7 +99,7 @@ pub enum CopyContent {
 }
 
 impl CopyContent {
-    /// Returns the words per pixel on the ring, which is also the number of 32-bit words in the backing store.
+    /// Returns the number of ring words for each pixel. The backing store needs the same number of 32-bit words.
     #[must_use]
     pub const fn words(self) -> u32 {
         match self {
@@ -104,8 +108,8 @@ impl CopyContent {
         }
     }
 
-    /// Returns the words of a region, from the colours (0x00RRGGBB) and, if they are sent, the 24-bit depths of its
-    /// pixels.
+    /// Returns the ring words of a region. `colours` are 0x00RRGGBB. `depths` is called only if the copy sends depths;
+    /// it must return 24-bit values.
     #[must_use]
     pub fn of(self, colours: Arc<[Word]>, depths: impl FnOnce() -> Vec<Word>) -> Arc<[Word]> {
         match self {
@@ -116,67 +120,70 @@ impl CopyContent {
     }
 }
 
-/// Returns a colour in 5, 6 and 5 bits below the upper 16 bits of a 24-bit depth.
+/// Returns a pixel as one word: the upper 16 bits of its 24-bit depth above its colour in 5, 6 and 5 bits.
 fn packed((colour, depth): (&Word, Word)) -> Word {
     (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }
 
-/// The path of a region's colours from pixel memory to the frame buffer.
+/// The path of a region's colours from a renderer's pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyPath {
-    /// Directly from pixel memory. The commands that follow wait until the last pixel has arrived.
+    /// Directly from pixel memory to the frame buffer. The commands that follow wait until the last pixel has arrived.
     FromPixelMemory,
-    /// Into the backing store, and from there to the frame buffer while the following commands execute. The second step
-    /// waits while another region of this renderer is being sent.
+    /// Into the renderer's backing store, and from there to the frame buffer while the following commands execute. The
+    /// second step waits while another region of this renderer is being sent.
     ThroughBacking,
-    /// Into the backing store, where the colours stay until a [`CopyPath::FromBacking`] command of the same target.
+    /// Into the renderer's backing store, where the colours stay until a [`CopyPath::FromBacking`] command for the same
+    /// target.
     IntoBacking,
-    /// From the backing store, after an earlier [`CopyPath::IntoBacking`] command of the same target.
+    /// From the renderer's backing store to the frame buffer. An earlier [`CopyPath::IntoBacking`] command for the same
+    /// target has filled the store.
     FromBacking,
 }
 
-/// Length of the message that tells a program that a region has been copied (assumed).
+/// Length in words of the message that notifies a program that a region was copied. The length is assumed.
 pub const COPY_ACKNOWLEDGEMENT_WORDS: u32 = 4;
 
 impl CommandList {
-    /// Returns the length of all commands in words.
+    /// Returns the total length of all commands in words.
     #[must_use]
     pub fn words(&self) -> u32 {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
 }
 
-/// A run of `count` successive commands of one kind.
+/// A sequence of `count` successive commands of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CommandRun {
     /// Operation code of the commands.
     pub opcode: u8,
     /// Length of one command in words.
     pub words_each: u32,
-    /// Number of commands in the run.
+    /// Number of commands in the sequence.
     pub count: u32,
 }
 
-/// A source of command words, which computes them on demand.
+/// A source that computes the words of renderer commands on demand.
 pub trait CommandWords: Debug + Send + Sync {
-    /// Appends the words of a part (one message) to `out`. Every call appends the same words.
+    /// Appends the words of message `part` to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the commands of a part to `out`, possibly without primitives that touch no pixel of their region.
-    /// Returns true if a primitive is among the commands. `out` receives whole commands; each command that draws sets
-    /// Enable first.
+    /// Passes the commands of message `part` to `out`. Primitives that touch no pixel of the region can be left out.
+    /// Returns true if a primitive is among the passed commands. `out` receives only whole commands, and each command
+    /// that draws first sets the Enable bits of the pixels.
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
     }
 }
 
-/// A receiver of commands in order: words, and triangles without words where possible.
+/// A receiver of renderer commands in order. Commands come as words, or as triangles in a form that needs no words.
 pub trait CommandSink {
-    /// Returns the list to which words of commands are appended.
+    /// Returns the list to which the caller appends the words of commands.
     fn words(&mut self) -> &mut Vec<Word>;
 
-    /// Accepts triangles that come after the words so far. Returns false if their words must be appended instead.
+    /// Accepts triangles that follow the words appended so far. Returns false if the caller must append the words of
+    /// the triangles instead.
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool;
 }
 
@@ -190,14 +197,14 @@ impl CommandSink for Vec<Word> {
     }
 }
 
-/// Words computed in advance, as a single part.
+/// A source whose words are already computed, for a single message.
 impl CommandWords for Vec<Word> {
     fn append_words(&self, _: u32, out: &mut Vec<Word>) {
         out.extend_from_slice(self);
     }
 }
 
-/// The lines of a frame that a picture fills.
+/// The lines of a frame that a picture fills: all of them, or those of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
@@ -231,50 +238,51 @@ impl FieldParity {
     }
 }
 
-/// The place of a region in a frame buffer.
+/// The destination of a region's pixels in a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyTarget {
     /// Port of the frame buffer.
     pub frame_buffer: NodeId,
-    /// Number of the buffer, 0 or 1.
+    /// Number of the pixel buffer, 0 or 1.
     pub buffer: u8,
-    /// Lines of the frame that the rows of the grid fill.
+    /// Lines of the frame that the rows of the picture fill.
     pub lines: Lines,
     /// Division of the picture into regions.
     pub grid: RegionGrid,
-    /// Number of the region in the grid.
+    /// Number of the region within the grid.
     pub region: RegionId,
-    /// Picture that the region belongs to, as counted by its pipeline; see [`PictureNumber`]. Boards use it only to
-    /// separate successive copies of a region. Observers use it to collect the regions of a picture.
+    /// Number of the picture that contains the region, as counted by its pipeline; see [`PictureNumber`]. Boards use
+    /// the number only to separate successive copies of a region. Observers use the number to collect the regions of a
+    /// picture.
     pub picture: PictureNumber,
 }
 
-/// Part of one region's pixels: message `part` of `parts`.
+/// A message with a part of a region's pixels: number `part` of `parts` messages.
 #[derive(Clone, Debug)]
 pub struct RegionPixels {
-    /// Place of the region in a display.
+    /// Destination of the region's pixels in a display.
     pub target: CopyTarget,
-    /// Pixels of the whole region.
+    /// Pixels of the whole region, not only of this part.
     pub image: Arc<dyn PixelSource>,
-    /// Number of this message within the region, from 0.
+    /// Number of this message within the region, counted from 0.
     pub part: u32,
-    /// Number of messages of the whole region.
+    /// Number of messages that the whole region needs.
     pub parts: u32,
 }
 
 /// The pixels of a region, computed on demand.
 pub trait PixelSource: Debug + Send + Sync {
-    /// Returns one word 0x00RRGGBB per pixel, row by row, for `width * height` pixels of the region's rectangle.
-    /// For a copy with depth the words are as [`CopyContent`] defines them.
+    /// Returns one word 0x00RRGGBB for each of the `width * height` pixels of the region, row by row. For a copy with
+    /// depth, [`CopyContent`] defines the words.
     fn pixels(&self) -> Arc<[Word]>;
 }
 
-/// First word of the message that tells a program that a region has been copied.
+/// First word of the message that notifies a program that a region was copied.
 pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
 
 impl CopyTarget {
-    /// Returns the words that tell a program that this region has been copied: tag, region, low word of the picture
-    /// number, frame buffer.
+    /// Returns the words of the message that notifies a program that this region was copied. The words are: tag,
+    /// region, low word of the picture number, frame buffer.
     #[must_use]
     pub fn acknowledgement(&self) -> Arc<[Word]> {
         let words = [
@@ -287,16 +295,17 @@ impl CopyTarget {
     }
 }
 
-/// First word of the message that requests a swap at the next retrace. The buffer's number follows.
+/// First word of a message that requests a buffer swap at the next retrace. The second word is the number of the
+/// buffer.
 pub const SWAP_REQUEST: Word = 0x0005_3A9F;
 
-/// Returns the words of a request to show `buffer` from the next retrace on.
+/// Returns the words of a message that requests buffer `buffer` to be shown from the next retrace on.
 #[must_use]
 pub fn swap_request(buffer: u8) -> Arc<[Word]> {
     [SWAP_REQUEST, Word::from(buffer)].into()
 }
 
-/// Returns the requested buffer if the words are a swap request.
+/// Returns the number of the requested buffer if the words are a swap request, else `None`.
 #[must_use]
 pub fn read_swap_request(words: &[Word]) -> Option<u8> {
     match words {

@@ -1,17 +1,17 @@
-//! Expressions that a renderer evaluates at all pixels at once.
+//! Expressions that a renderer evaluates at all its pixels at once.
 
 use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// The code that sets the expression up includes the offset of the pixel's centre in `c`.
+/// The code that computes the coefficients must include the offset of the pixel's centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
-    /// Increment per pixel to the right.
+    /// Increase of the value from one pixel to the next one on the right.
     pub a: i32,
-    /// Increment per line downwards.
+    /// Increase of the value from one line to the next one below.
     pub b: i32,
-    /// Value at pixel (0, 0).
+    /// Value of the expression at pixel (0, 0).
     pub c: i32,
 }
 
@@ -22,7 +22,7 @@ impl Linear {
         Self { a: 0, b: 0, c }
     }
 
-    /// Returns the value at pixel (x, y).
+    /// Returns the value of the expression at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i32 {
         let ax = self.a.wrapping_mul(x);
@@ -30,18 +30,18 @@ impl Linear {
     }
 }
 
-/// Number of triangles whose expressions are stored side by side: one double of each fits into a vector of the widest
-/// unit.
+/// Number of triangles whose expressions are stored side by side. Eight doubles, one for each triangle, fill the widest
+/// vector register of host processors.
 pub const LANES: usize = 8;
 
-/// Linear expressions of [`LANES`] triangles.
+/// The linear expressions of [`LANES`] triangles, stored by coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinearLanes {
-    /// [`Linear::a`] of each triangle.
+    /// Coefficient [`Linear::a`] of each triangle.
     pub a: [i32; LANES],
-    /// [`Linear::b`] of each triangle.
+    /// Coefficient [`Linear::b`] of each triangle.
     pub b: [i32; LANES],
-    /// [`Linear::c`] of each triangle.
+    /// Coefficient [`Linear::c`] of each triangle.
     pub c: [i32; LANES],
 }
 
@@ -57,16 +57,17 @@ impl LinearLanes {
     }
 }
 
-/// Up to [`LANES`] triangles with the expressions of their renderer commands.
+/// Up to [`LANES`] triangles, as the expressions in their renderer commands.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleBatch<'a> {
-    /// Number of triangles, at most [`LANES`].
+    /// Number of triangles in the batch, at most [`LANES`].
     pub len: usize,
-    /// Edge expressions. A pixel is covered if all three are at least 0.
+    /// Edge expressions of the triangles. A pixel is covered if all three values are at least 0.
     pub edges: &'a [LinearLanes; 3],
-    /// Plane expressions: depth, then red, green and blue, or x, y and z of the normal.
+    /// Plane expressions of the triangles. The first is the depth. The others are red, green and blue, or the
+    /// components x, y and z of the normal.
     pub planes: &'a [LinearLanes; 4],
-    /// Colours of triangles with normals, 0x00RRGGBB.
+    /// Colours 0x00RRGGBB of triangles with normals, or `None` for triangles with colour expressions.
     pub colours: Option<[u32; LANES]>,
 }
 
@@ -92,7 +93,7 @@ pub struct Quadratic {
 }
 
 impl Quadratic {
-    /// Returns the value at pixel (x, y).
+    /// Returns the value of the expression at pixel (x, y).
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let px = x as i64;

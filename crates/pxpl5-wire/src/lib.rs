@@ -35,12 +35,12 @@ pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;
 
-/// Longest message in words (derived: a field region is 15 x 1,024 pixels).
+/// Greatest length of a message in words. The value is derived: a field region is 15 x 1,024 pixels.
 pub const MAX_MESSAGE_WORDS: u32 = 1024;
 
-/// Width and height of a renderer's pixel array (F89).
+/// Width and height of a renderer's pixel array, in pixels (F89).
 pub const REGION_SIZE: u32 = 128;
 
-/// Position of a board's port on the ring, counted in the direction of travel.
+/// Number of a board's port on the ring. Ports are counted in the direction in which messages travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct NodeId(pub u16);

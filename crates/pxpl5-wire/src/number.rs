@@ -1,20 +1,21 @@
-//! Numbers of periods, pictures and views: three independent counts.
+//! Numbers of periods, pictures and views. The three counts are independent of each other.
 //!
 //! | number | counts | counted by |
 //! |---|---|---|
 //! | [`PeriodNumber`] | periods of a display: fields of NTSC video, refreshes of the high-resolution monitor | the display's clock |
 //! | [`PictureNumber`] | pictures of a pipeline: frames, fields, batches of blocks | the pipeline's firmware |
-//! | [`ViewNumber`] | poses and edits taken from the host | the program that requests them |
+//! | [`ViewNumber`] | poses and edits received from the host | the program that requests them |
 //!
-//! A picture is shown in a period and shows a view. Only the pipeline knows the relation: [`PictureNumber::drawn_for`],
-//! [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and [`ViewNumber::picture_taken_for`].
+//! A picture is shown in a period, and the picture shows a view. Only the pipeline knows the relation between the three
+//! numbers: [`PictureNumber::drawn_for`], [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and
+//! [`ViewNumber::picture_taken_for`].
 
 use crate::Word;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Declares a number type that counts from 0, with arithmetic within its own type only. Text and data contain the bare
-/// number.
+/// Declares a number type that counts from 0. Its arithmetic accepts only numbers of the same type. In text and data
+/// files the number stands without the name of its type.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -23,16 +24,16 @@ macro_rules! count_from_zero {
         pub struct $name(pub u64);
 
         impl $name {
-            /// Number 0.
+            /// The first number, 0.
             pub const FIRST: Self = Self(0);
 
-            /// Returns the next number. The greatest number returns itself.
+            /// Returns the next number, or the same number if it is the greatest one.
             #[must_use]
             pub const fn next(self) -> Self {
                 self.after(1)
             }
 
-            /// Returns the number `count` earlier; `None` below 0.
+            /// Returns the number that is smaller by `count`. Returns `None` if the result would be negative.
             #[must_use]
             pub const fn before(self, count: u64) -> Option<Self> {
                 match self.0.checked_sub(count) {
@@ -41,35 +42,35 @@ macro_rules! count_from_zero {
                 }
             }
 
-            /// Returns the number `count` later, at most the greatest number.
+            /// Returns the number that is greater by `count`, but at most the greatest number.
             #[must_use]
             pub const fn after(self, count: u64) -> Self {
                 Self(self.0.saturating_add(count))
             }
 
-            /// Returns the difference to an earlier number, or 0 if `earlier` is later.
+            /// Returns the distance from an earlier number. Returns 0 if `earlier` is the later one.
             #[must_use]
             pub const fn since(self, earlier: Self) -> u64 {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all later ones.
+            /// Iterates over this number and all greater ones.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }
 
-            /// Iterates over this number and later ones, up to but without `end`.
+            /// Iterates from this number to `end`, without `end` itself.
             pub fn until(self, end: Self) -> impl DoubleEndedIterator<Item = Self> + Clone {
                 (self.0..end.0).map(Self)
             }
 
-            /// Returns the number as two words of the ring, the low word first.
+            /// Returns the number as two ring words, the low word first.
             #[must_use]
             pub const fn to_words(self) -> [Word; 2] {
                 [self.0 as Word, (self.0 >> 32) as Word]
             }
 
-            /// Makes a number from its low and high word.
+            /// Makes a number from its low word and its high word.
             #[must_use]
             pub const fn from_words(low: Word, high: Word) -> Self {
                 Self(low as u64 | (high as u64) << 32)
@@ -85,37 +86,37 @@ macro_rules! count_from_zero {
 }
 
 count_from_zero! {
-    /// A period of a display, from one tick of its clock to the next.
-    /// Number n begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field; a
-    /// retrace has the number of the field that it begins. A period of the high-resolution frame buffer is a refresh.
+    /// The number of a display period. A period is the time from one tick of the display's clock to the next. Number n
+    /// begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field; a retrace has
+    /// the number of the field that it begins. A period of the high-resolution frame buffer is a refresh.
     PeriodNumber
 }
 
 count_from_zero! {
-    /// A picture: everything that a pipeline draws for one moment and shows together, for all surfaces.
-    /// Each pipeline counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A picture of
-    /// Slats or just-in-time pixels is a field and has the number of its period. A picture of frameless rendering is a
-    /// batch of blocks.
+    /// The number of a picture. A picture is everything that a pipeline draws for one moment and shows together, on all
+    /// surfaces. Each pipeline counts its pictures from 0. A picture of Rendering Control is a frame with both eyes. A
+    /// picture of Slats or just-in-time pixels is a field and has the number of its period. A picture of frameless
+    /// rendering is a batch of blocks.
     PictureNumber
 }
 
 count_from_zero! {
-    /// A view: one pose of the head and the edits with it, as received from the host.
-    /// The program that requests views numbers them. Rendering Control and frameless rendering request one for each
-    /// picture, Slats one for each transmission, just-in-time pixels a fixed number for each field.
+    /// The number of a view. A view is one pose of the head, with edits of the scene, as received from the host. The
+    /// program that requests views numbers them. Rendering Control and frameless rendering request one view for each
+    /// picture, Slats one view for each transmission, just-in-time pixels a fixed number of views for each field.
     ViewNumber
 }
 
 impl PictureNumber {
-    /// Returns the picture for a period, in pipelines that draw one picture for every period (Slats, just-in-time
-    /// pixels). Both have the same number.
+    /// Returns the number of the picture that is drawn for a period. Valid only in pipelines that draw one picture for
+    /// every period: Slats and just-in-time pixels. Both numbers are equal.
     #[must_use]
     pub const fn drawn_for(period: PeriodNumber) -> Self {
         Self(period.0)
     }
 
-    /// Returns the period of a picture, in pipelines that draw one picture for every period. In other pipelines the
-    /// result has no meaning.
+    /// Returns the number of the period for which a picture is drawn. Valid only in pipelines that draw one picture for
+    /// every period.
     #[must_use]
     pub const fn period_drawn_for(self) -> PeriodNumber {
         PeriodNumber(self.0)
@@ -123,15 +124,15 @@ impl PictureNumber {
 }
 
 impl ViewNumber {
-    /// Returns the view for a picture, in pipelines that take one view for every picture (Rendering Control, frameless
-    /// rendering). Both have the same number.
+    /// Returns the number of the view that a picture shows. Valid only in pipelines that request one view for every
+    /// picture: Rendering Control and frameless rendering. Both numbers are equal.
     #[must_use]
     pub const fn taken_for(picture: PictureNumber) -> Self {
         Self(picture.0)
     }
 
-    /// Returns the picture of a view, in pipelines that take one view for every picture. In other pipelines the result
-    /// has no meaning.
+    /// Returns the number of the picture that shows a view. Valid only in pipelines that request one view for every
+    /// picture.
     #[must_use]
     pub const fn picture_taken_for(self) -> PictureNumber {
         PictureNumber(self.0)

@@ -1,13 +1,13 @@
-//! Eyes, surfaces, and the division of the screen into regions.
+//! Eyes, visible surfaces, and the division of pictures into regions.
 
 use crate::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 
-/// The eye that a picture is drawn for.
+/// The eye for which a picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Eye {
-    /// The left eye, or the only view of a mono picture.
+    /// The left eye, or the only eye of a picture without stereo.
     Left,
     /// The right eye, shown by the second frame buffer.
     Right,
@@ -17,13 +17,13 @@ impl Eye {
     /// Both eyes, in the order in which the pipelines draw them.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Returns 0 for left, 1 for right.
+    /// Returns the index of the eye: 0 for left, 1 for right.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Returns the name in files and tables: `left` or `right`.
+    /// Returns the name of the eye in files and tables: `left` or `right`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -33,8 +33,8 @@ impl Eye {
     }
 }
 
-/// The number of a visible surface of a machine's displays, counted over all displays in their order. With one NTSC
-/// display it is the number of the eye.
+/// The number of a visible surface, counted over all displays of a machine in order. With a single NTSC display, the
+/// number equals the index of the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SurfaceId(pub u16);
 
@@ -51,20 +51,21 @@ impl From<Eye> for SurfaceId {
     }
 }
 
-/// The number of a region, counted row by row from the top left.
+/// The number of a region in a picture, counted row by row from the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u16);
 
-/// The division of a picture into a grid of regions. Lengths are in pixels; the last column and row may be smaller.
+/// The division of a picture into a grid of regions. All lengths are in pixels. Regions in the last column and row can
+/// be smaller than the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
-    /// Width of the picture.
+    /// Width of the picture in pixels.
     pub width: u32,
-    /// Height of the picture in drawn lines (240 for a field).
+    /// Height of the picture in drawn lines, for example 240 for a field.
     pub height: u32,
-    /// Width of a region, at most 128.
+    /// Width of a region in pixels, at most 128.
     pub region_width: u32,
-    /// Height of a region, at most 128.
+    /// Height of a region in pixels, at most 128.
     pub region_height: u32,
 }
 
@@ -75,19 +76,19 @@ impl RegionGrid {
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
     pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
-    /// Returns the number of regions in a row.
+    /// Returns the number of regions in each row of the grid.
     #[must_use]
     pub const fn columns(&self) -> u32 {
         self.width.div_ceil(self.region_width)
     }
 
-    /// Returns the number of rows of regions. The last row may be cut off.
+    /// Returns the number of rows of regions. The regions of the last row can be cut off at the bottom.
     #[must_use]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
-    /// Returns the number of regions of the grid.
+    /// Returns the number of regions in the whole grid.
     #[must_use]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()
@@ -103,9 +104,9 @@ impl RegionGrid {
         [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
 
-    /// Returns left, top, width and height of a region from a message, or `None` if the grid or the region is invalid.
-    /// The grid must not be empty or larger than `width` x `height` and must contain the region. The region must have
-    /// pixels, and at most a renderer's array of them.
+    /// Returns left, top, width and height of a region that was named in a message. Returns `None` if the grid or the
+    /// region is invalid. The grid must not be empty or larger than `width` x `height`, and must contain the region.
+    /// The region must have at least one pixel, and at most as many pixels as a renderer's array.
     #[must_use]
     pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
         // Check the grid before any division by its sizes.
