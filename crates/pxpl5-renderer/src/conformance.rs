@@ -293,7 +293,7 @@ mod tests {
                 legal.insert(words[0] >> 24);
             }
         }
-        // Every list of the suite begins with "enable all". The test below this suite compares outputs in `Executed`.
+        // Every list of the suite begins with "enable all". The test next to this suite compares outputs in `Executed`.
         let expected: BTreeSet<u32> = [0x02..=0x07, 0x10..=0x14, 0x20..=0x24, 0x30..=0x3c, 0x40..=0x43]
             .into_iter()
             .chain([0x48..=0x4b, 0x50..=0x51, 0x60..=0x62])
