@@ -64,7 +64,7 @@ impl RunStep {
     }
 }
 
-/// Executes a run in all tiles.
+/// A kernel that executes a run in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
