@@ -15,10 +15,11 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is a seed
-//! with two Newton steps in single precision. A matrix turns the normals, and they are not normalized again. Light is
-//! computed in the coordinates of the normals. kernels/parameters.s defines registers and memory layouts. Each choice
-//! of [`Kernel`] concatenates its own source files, like a linker. This crate neither assembles nor runs the sources.
+//! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
+//! computed from a first approximation by two Newton steps, in single precision. A matrix turns the normals, and they
+//! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
+//! registers and memory layouts. Each choice of [`Kernel`] concatenates its own source files, like a linker. This crate
+//! neither assembles nor runs the sources.
 
 mod between;
 

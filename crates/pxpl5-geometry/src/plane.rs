@@ -23,7 +23,7 @@ use pxpl5_wire::Linear;
 /// has the mean of its values at the corners. [`SetupStats::flattened_planes`] counts such planes.
 ///
 /// The relative error of a slope is 2^-51, since Newton steps compute the reciprocal of the area. For slopes up to this
-/// limit, the absolute error is 2^-15. From a corner to the reference pixel it is at most 2^13 px. Over this distance,
+/// limit, the absolute error is 2^-15. A corner is at most 2^13 px away from the reference pixel. Over this distance,
 /// no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 

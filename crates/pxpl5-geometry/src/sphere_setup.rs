@@ -188,7 +188,7 @@ impl ScreenSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
-        // The root at the middle of the sphere. The z of the normal there is a quarter of it.
+        // The root at the middle of the sphere. The z of the normal there is a quarter of this root.
         let greatest = root(self.ellipse.value) * conic::power_of_two(-i32::from(conic.depth_shift));
         let scale = greatest * 0.25 * unit;
         let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {

@@ -303,8 +303,8 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours to the backing store when it has room. If depths are copied too, they move as
-    /// a second block.
+    /// Moves a finished region's colours to the backing store when the store has room. If depths are copied too, they
+    /// move as a second block.
     ///
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {

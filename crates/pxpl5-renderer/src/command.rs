@@ -6,7 +6,8 @@
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside where the expression is `>= 0`. The sender folds the tie rule into `c`.
+//! - Edge: a pixel is inside where the expression is `>= 0`. For pixels exactly on the edge, the sender adjusts `c` by
+//!   the tie rule.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
 //! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles

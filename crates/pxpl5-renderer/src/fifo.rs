@@ -3,7 +3,7 @@
 //!
 //! Rules (assumed where the papers are silent):
 //!
-//! - A word enters the channel once the FIFO has room for it. It takes one word time on the channel.
+//! - A word enters the channel once the FIFO has room for this word. Each word takes one word time on the channel.
 //! - A command starts when all its words have arrived and the command before it has ended.
 //! - The words of a command leave the FIFO when the command starts.
 //! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before

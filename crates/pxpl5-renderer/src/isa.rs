@@ -1,10 +1,10 @@
 //! The instruction set of the renderer's controller.
 //!
-//! No list of the machine's instructions is public. Published are the ingredients (F89, TR94, LK): bit-serial
-//! instructions that arrive in ring messages, an Enable register that masks pixels, a tree that evaluates linear and
-//! quadratic expressions for all pixels at once, 208 bits of pixel memory, and a backing store that moves 32-bit blocks
-//! in the background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs
-//! the published program of a triangle and the shading at the end of a frame.
+//! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
+//! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
+//! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
+//! background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs the
+//! published program of a triangle and the shading at the end of a frame.
 //!
 //! # Words
 //!
@@ -41,9 +41,9 @@
 //! | 62 | wait | 1 | 2 | until the backing store is idle |
 //! | 70 | output | 9 | 2, then in the background | the region's colour field goes to a frame buffer |
 //!
-//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). *n* is
-//! 0 if bit 7 of the modifier says *again*: the evaluator repeats its latched coefficients. *s* is in bits 5..0 of the
-//! modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
+//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). If bit
+//! 7 of the modifier (*again*) is set, *n* is 0, and the evaluator reuses its last coefficients of this kind. *s* is in
+//! bits 5..0 of the modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
 //!
 //! # Rules
 //!

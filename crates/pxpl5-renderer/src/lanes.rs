@@ -119,7 +119,7 @@ struct Drawing<'a> {
     array: &'a mut Lanes,
     /// Collected words that have not been executed yet.
     words: &'a mut Vec<Word>,
-    /// Regions copied so far. After a fault it is the fault, and no further command is drawn.
+    /// Regions copied so far. After a fault, this field holds the fault, and no further command is drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 

@@ -41,8 +41,8 @@ impl Tile {
 
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
-    /// In the reference mode, the tile always executes it. In the skipping mode, the tile executes it only if a pixel
-    /// is enabled.
+    /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
+    /// pixel do.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()

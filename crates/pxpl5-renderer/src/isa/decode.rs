@@ -106,7 +106,7 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the field that the first word names. It must be one bit wide.
+    /// Returns the field that the first word names. This field must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }

@@ -35,8 +35,8 @@ impl Operand {
         Self { signed: true, ..self }
     }
 
-    /// Returns the part of this field that begins at bit `low` of the field and has `width` bits. It is signed if this
-    /// field is.
+    /// Returns the part of this field that begins at bit `low` of the field and has `width` bits. The part is signed if
+    /// this field is signed.
     #[must_use]
     pub const fn part(self, low: u8, width: u8) -> Self {
         Self { address: self.address + low, width, ..self }

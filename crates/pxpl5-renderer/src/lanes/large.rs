@@ -1,4 +1,5 @@
-//! Fast execution of spheres and shading. These commands take so long that decoding all their words costs little.
+//! Fast execution of spheres and shading. Each of these commands draws many pixels, so decoding all of its words costs
+//! little in comparison.
 
 use super::Lanes;
 use super::columns::ContextColumns;

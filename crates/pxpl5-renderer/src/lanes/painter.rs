@@ -41,7 +41,7 @@ impl<V: SimdVector> Walk<V> {
     }
 }
 
-/// A store of values in the pixels that pass the depth test.
+/// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
     /// Sets the colour of the next triangle. It is ignored if colours are interpolated.
     fn begin(&mut self, colour: Word);
