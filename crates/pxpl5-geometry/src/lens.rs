@@ -27,7 +27,7 @@ pub(crate) struct Lens {
     pub(crate) far: [f64; 2],
     /// Largest distance t along -Z that counts as behind the eye.
     pub(crate) least: f64,
-    /// Coefficients of the depth, which is `base + reach u` in units of the depth expression.
+    /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
     pub(crate) base: f64,
     pub(crate) reach: f64,
 }

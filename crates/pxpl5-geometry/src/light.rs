@@ -4,7 +4,7 @@ use crate::view::{self, FromWorld};
 use crate::{Light, Triangle};
 use glam::Vec3;
 
-/// A light in the coordinates of the normals in the display list.
+/// A light whose direction is converted to the coordinates of the display list's normals.
 pub(crate) struct ModelLight<'a> {
     normals: &'a NormalRows,
     direction: [f32; 3],

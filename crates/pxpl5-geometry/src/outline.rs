@@ -13,7 +13,8 @@ pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 pub struct Outline {
     /// Distance of each corner from the picture's left border, in 1/16 px.
     pub x: [i32; 3],
-    /// Distance of each corner from the frame's top border, in 1/16 px. For a field too, lines of the frame count.
+    /// Distance of each corner from the frame's top border, in 1/16 px. For a field too, the distance is measured on
+    /// the whole frame.
     pub y: [i32; 3],
     /// Depth of each corner, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],

@@ -232,7 +232,7 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Returns the rows x, y, z and w of the matrix. It applies to points relative to [`Self::origin`].
+    /// Returns the rows x, y, z and w of the matrix. The matrix applies to points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }

@@ -27,7 +27,6 @@ pub trait PixelArray {
     ///
     /// A fault ends the execution, as on the hardware; pixels drawn before the fault stay. The final pixel memory is
     /// the same as after [`Self::execute`], but Enable can differ. `room` is a buffer for words.
-    /// [`Self::execute`], but Enable may differ. `room` is scratch memory for words.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_visible(room);

@@ -87,9 +87,9 @@ pub enum Expression {
     Linear(Linear),
     /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// The most recent linear expression again. The evaluator has kept its coefficients.
+    /// Repetition of the most recent linear expression, whose coefficients the evaluator has kept.
     LinearAgain,
-    /// The most recent quadratic expression again. The evaluator has kept its coefficients.
+    /// Repetition of the most recent quadratic expression, whose coefficients the evaluator has kept.
     QuadraticAgain,
 }
 

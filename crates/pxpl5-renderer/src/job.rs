@@ -112,7 +112,7 @@ impl PixelJob {
         })
     }
 
-    /// Returns the cache key of a region whose commands are `words`. None of them draws a primitive.
+    /// Returns the cache key of a region whose commands are `words`. None of these commands draws a primitive.
     ///
     /// Returns `None` if some words are no command, or if depths are copied too.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {

@@ -115,7 +115,8 @@ impl TriangleEncoder {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the words of a triangle's command. They equal the encoded [program](super::Command::program).
+    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.colour, out);
@@ -135,7 +136,8 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the words of a triangle's command. They equal the encoded [program](super::Command::program).
+    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.normal, out)[COLOUR_AT] = triangle.colour;

@@ -221,7 +221,7 @@ fn repainted(command: Command) -> Command {
     }
 }
 
-/// Returns the edge expression from p to q, given in sixteenths of a pixel. The inside is on its left.
+/// Returns the edge expression from p to q, given in sixteenths of a pixel. The inside is on the left of the edge.
 /// Coefficients are truncated to 32 bits.
 fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let dx = q[0] - p[0];

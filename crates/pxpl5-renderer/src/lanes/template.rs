@@ -5,7 +5,7 @@ use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// A template of a command of `N` words, whose operands take whole words. It compares all words that are no operands.
+/// A template of a command of `N` words. Each operand takes a whole word. The template compares all other words.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
