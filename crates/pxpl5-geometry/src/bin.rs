@@ -1,22 +1,23 @@
 //! Binning: finds the regions that a screen triangle touches.
 //!
-//! A region is *touched* when both of these are true:
+//! A region is *touched* when both of these conditions are true:
 //!
-//! - The bounding box of the triangle contains the centre of one of the region's columns and of one of its rows.
+//! - The bounding box of the triangle contains the centres of one of the region's pixel columns and of one of its pixel
+//!   rows.
 //! - For each edge, some point of the region's *pixel-centre box* is on the inner side, with the tie rule of the edge.
-//!   The box is the smallest rectangle around the centres of the region's pixels.
+//!   The box is the smallest rectangle that contains the centres of the region's pixels.
 //!
-//! These conditions are the sides of the Minkowski sum of triangle and box. So the test decides exactly whether the
+//! Together, the conditions test all sides of the Minkowski sum of triangle and box. So they are true exactly if the
 //! triangle, without its right and bottom edges, meets the pixel-centre box. Every region with a covered pixel is
-//! touched. A touched region may have no covered pixel, if the triangle passes between its pixel centres. A triangle
-//! between two columns or two rows touches no region there.
+//! touched. A touched region can be without covered pixels, if the triangle passes between its pixel centres. A
+//! triangle that lies between two columns or two rows of pixel centres touches no region there.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;
 use crate::view::Viewport;
 use pxpl5_wire::Linear;
 
-/// First and last pixel of an interval along one axis. The interval is empty if `first > last`.
+/// First and last pixel of an interval along one axis. If `first > last`, the interval is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Range {
     pub(crate) first: i32,
@@ -28,7 +29,8 @@ impl Range {
         self.first > self.last
     }
 
-    /// Returns the pixels whose centres lie in [low, high), in subpixels. The tie rule draws no pixel at `high`.
+    /// Returns the pixels whose centres lie in [low, high), given in subpixels. By the tie rule, a pixel with its
+    /// centre at `high` is not drawn.
     #[inline(always)]
     pub(crate) const fn of_centres(low: i32, high: i32) -> Self {
         Self { first: (low + 7) >> 4, last: (high - 9) >> 4 }
@@ -40,7 +42,7 @@ impl Range {
     }
 }
 
-/// The regions of a picture, with reciprocals for a fast look-up by pixel.
+/// The division of a picture into regions, with reciprocals of the region's size to find the region of a pixel quickly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binner {
     pub(crate) width: i32,
@@ -54,9 +56,9 @@ pub(crate) struct Binner {
     first_line: i32,
 }
 
-/// Returns a reciprocal with `n / size == n * reciprocal(size) >> 20`, for n below 2^13 and size up to 128.
+/// Returns a reciprocal such that `n / size == n * reciprocal(size) >> 20`, for n below 2^13 and sizes up to 128.
 ///
-/// The reciprocal is too large by less than `size / 2^20`. Times n, the excess stays below `1 / size`.
+/// The reciprocal is too large by less than `size / 2^20`. Times n, this excess stays below `1 / size`.
 const fn reciprocal(size: u32) -> u32 {
     (1_u32 << 20).div_ceil(size)
 }
@@ -86,7 +88,7 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the picture rows of a range of frame lines.
+    /// Returns the rows of the picture that are among a range of frame lines.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -96,7 +98,7 @@ impl Binner {
         }
     }
 
-    /// Returns the regions that a rectangle of pixels meets. Its rows are given as frame lines.
+    /// Returns the regions that meet a rectangle of pixels. The rectangle's rows are given as frame lines.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -106,7 +108,7 @@ impl Binner {
         self.cells(x, y, |_, _| true)
     }
 
-    /// Returns the regions that a triangle touches, as the module documentation defines.
+    /// Returns the regions that a triangle touches, as defined in the module documentation.
     #[inline(always)]
     pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
         let [low_x, high_x] = extent(&outline.x);
@@ -116,7 +118,7 @@ impl Binner {
         if x.is_empty() || y.is_empty() {
             return RegionMask::EMPTY;
         }
-        // Fast path: a triangle inside the pixel-centre box of one region touches only that region.
+        // Fast path: a triangle inside the pixel-centre box of one region touches no other region.
         let column = quotient(x.first, self.column_reciprocal);
         let row = quotient(y.first, self.row_reciprocal);
         let (left, right) = self.column_box(column);
@@ -129,10 +131,10 @@ impl Binner {
         self.test_edges(outline.x, outline.y, x, y)
     }
 
-    /// Tests the edges of a triangle against the regions of some pixels.
+    /// Returns the regions that a triangle touches, among the regions with pixels in the columns `x` and rows `y`.
     ///
-    /// The parameters are the corners only. With the whole outline as a parameter, callers that need no depths would
-    /// still compute them.
+    /// The parameters are only the corners' positions. With the whole outline as a parameter, callers that need no
+    /// depths would still compute them.
     #[inline(never)]
     pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
@@ -144,7 +146,7 @@ impl Binner {
         })
     }
 
-    /// Returns the cells of the grid that hold pixels of `x` and `y` and pass `test(column, row)`.
+    /// Returns the regions that hold pixels of `x` and `y`, and for which `test(column, row)` is true.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
@@ -157,7 +159,7 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// Returns the first and last pixel of a column of regions.
+    /// Returns the first and last pixel, along x, of a column of regions.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
@@ -172,7 +174,7 @@ impl Binner {
         (self.line_of_row(top), self.line_of_row(bottom))
     }
 
-    /// Returns the frame line of a row of the picture's pixels.
+    /// Returns the frame line of a pixel row of the picture.
     #[inline(always)]
     const fn line_of_row(&self, row: i32) -> i32 {
         (row << self.line_shift) + self.first_line
@@ -180,10 +182,10 @@ impl Binner {
 }
 
 impl Outline {
-    /// Returns true if the triangle meets the box around the centres of a rectangle's pixels.
+    /// Returns true if the triangle meets the box around the pixel centres of a rectangle.
     ///
-    /// The rectangle is given by its first and last pixel across and its first and last frame line. The rule is the
-    /// same as for regions.
+    /// The rectangle is given by its first and last pixel along x, and by its first and last frame line. The conditions
+    /// are the same as for regions.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         let x = pixels_between(&self.x);
@@ -195,13 +197,13 @@ impl Outline {
     }
 }
 
-/// Returns the pixels whose centres lie between the least and the greatest of three corners, in subpixels.
+/// Returns the pixels whose centres lie between the smallest and the largest of three corners, given in subpixels.
 fn pixels_between(corners: &[i32; 3]) -> Range {
     let [low, high] = extent(corners);
     Range::of_centres(low, high)
 }
 
-/// Returns the largest value of an edge expression over a box of pixels. It cannot overflow: see
+/// Returns the largest value of an edge expression over a rectangle of pixels. The computation cannot overflow: see
 /// [`crate::GUARD_PIXELS`].
 fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
     let x = if edge.a > 0 { right } else { left };

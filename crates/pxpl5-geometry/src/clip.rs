@@ -1,35 +1,38 @@
 //! Clipping in homogeneous clip coordinates, before the divide by w.
 //!
-//! Triangles are clipped only as far as the formats need: by the near plane (z = 0), the far plane (z = w), and four
-//! planes of a guard band some 4,000 px outside the picture. Edge expressions handle triangles that leave the picture
-//! but not the guard band.
+//! Triangles are clipped only as far as the number formats require. The clip planes are the near plane (z = 0), the far
+//! plane (z = w), and four planes of a guard band. The guard band extends some 4,000 px beyond the picture. A triangle
+//! that leaves the picture but not the guard band is not clipped; edge expressions handle it.
 //!
-//! An edge shared by two triangles is cut at the same point in both, bit for bit. The point is computed from the lesser
-//! to the greater end in a fixed order of clip coordinates, whatever the winding. So the cut opens no gap.
+//! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The ends of an edge have a fixed
+//! order, given by their clip coordinates, and the cut is computed from the lesser to the greater end. So the winding
+//! of a triangle has no effect, and the cut opens no gap.
 //!
 //! Cuts are computed in double precision until they are on the screen. Close to the eye, the small coordinates of a
-//! long edge are differences of large numbers. A cut that is some pixels off would fold over the pieces.
+//! long edge are differences of large numbers. With a cut that is some pixels off, the pieces of a triangle could fold
+//! over.
 
 use crate::newton;
 use std::cmp::Ordering;
 
-/// Largest absolute clip coordinate. Larger ones, infinities and NaN are rejected, so that no step overflows.
+/// Largest allowed absolute value of a clip coordinate. Triangles with larger coordinates, infinities or NaN are
+/// dropped, so no step overflows.
 pub const MAX_CLIP: f32 = 1e30;
 
-/// Smallest w for the divide: its reciprocal times a clip coordinate stays finite.
+/// Smallest w for the division. The reciprocal of w, times a clip coordinate, is then finite.
 pub(crate) const MIN_W: f32 = 1e-30;
 
-/// Largest number of corners after a triangle is cut by six planes.
+/// Largest number of corners of a triangle after cuts by six planes.
 const MAX_CORNERS: usize = 9;
 
-/// A vertex in clip coordinates with `N` values that vary linearly.
+/// A vertex in clip coordinates, with `N` surface values that vary linearly over the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) clip: [f32; 4],
     pub(crate) extra: [f32; N],
 }
 
-/// The guard band: |x| is at most `x w`, and |y| is at most `y w`.
+/// The guard band: the points with |x| at most `self.x * w` and |y| at most `self.y * w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guard {
     pub(crate) x: f32,
@@ -41,7 +44,7 @@ pub(crate) struct Guard {
 pub(crate) struct Corner<const N: usize> {
     pub(crate) clip: [f64; 4],
     pub(crate) extra: [f64; N],
-    /// True if the corner is a cut, false if it is a vertex of the triangle.
+    /// True if a plane has cut an edge at this corner. False if the corner is a vertex of the original triangle.
     pub(crate) cut: bool,
 }
 
@@ -69,7 +72,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner. Rounding can make a polygon slightly concave; corners beyond the ninth are dropped.
+    /// Adds a corner. Rounding can make a polygon slightly concave, and then give more corners. Corners beyond the
+    /// ninth are dropped.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
@@ -79,7 +83,8 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Guard {
-    /// Returns the signed distance of a point from one of the six planes; a point inside has none below 0.
+    /// Returns the signed distance of a point from one of the six planes. It is negative if the point is outside this
+    /// plane.
     fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
         let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
@@ -92,7 +97,7 @@ impl Guard {
         }
     }
 
-    /// Returns true if a vertex needs no clipping. Returns false for NaN and for coordinates beyond [`MAX_CLIP`].
+    /// Returns true if a vertex needs no clipping. For NaN and for coordinates beyond [`MAX_CLIP`], returns false.
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
         let across = (x.abs() <= self.x * w) & (y.abs() <= self.y * w);
@@ -104,7 +109,7 @@ impl Guard {
     pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
-        // Most triangles cross few planes, so cut only by planes that have a corner outside.
+        // Most triangles cross few planes. So cut only by planes that have a corner outside.
         for plane in 0..6 {
             if polygon.corners().iter().any(|corner| self.distance(plane, corner.clip) < 0.0) {
                 polygon = self.cut(plane, &polygon);
@@ -129,7 +134,8 @@ impl Guard {
         out
     }
 
-    /// Returns the point where an edge crosses a plane, computed from the lesser end of the edge.
+    /// Returns the point where an edge crosses a plane. It is computed from the end that comes first in the order of
+    /// clip coordinates.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),
@@ -146,17 +152,17 @@ impl Guard {
     }
 }
 
-/// Interpolates linearly: `t` is 0 at `from` and 1 at `to`.
+/// Interpolates linearly between two numbers: `t` = 0 gives `from`, and `t` = 1 gives `to`.
 fn interpolate(from: f64, to: f64, t: f64) -> f64 {
     from + (to - from) * t
 }
 
-/// Compares clip coordinates by a total order.
+/// Compares two points by their clip coordinates, in a total order.
 fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if all corners lie outside one of the six planes of the view volume.
+/// Returns true if one of the six planes of the view volume has all three corners outside.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,
@@ -169,7 +175,7 @@ pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     beyond_a_side.iter().any(|beyond| corners.iter().all(beyond))
 }
 
-/// Returns true if the absolute value of every coordinate is at most [`MAX_CLIP`].
+/// Returns true if no coordinate of the corners exceeds [`MAX_CLIP`] in absolute value. Returns false for NaN.
 pub(crate) fn representable(corners: &[[f32; 4]; 3]) -> bool {
     corners.iter().flatten().all(|v| v.abs() <= MAX_CLIP)
 }

@@ -1,21 +1,23 @@
-//! Conics on the screen, which are the images of spheres, in floating point and in the renderer's fixed point.
+//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed point.
 
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Bits of a silhouette's value within its regions: one less than the renderer evaluates, including the sign.
+/// Number of bits of a silhouette's absolute value within its regions. With the sign it has 47 bits, one less than the
+/// renderer evaluates.
 const VALUE_BITS: i32 = 46;
 
-/// Largest number of bits of a root in the renderer.
+/// Largest number of bits of a square root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits of a silhouette that a root can ignore.
+/// Largest number of low bits of a silhouette expression that the root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root before its subtraction from a depth.
+/// Largest left shift of a root, in bits, before its subtraction from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
-/// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, with (dx, dy) in pixels from `origin`.
+/// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`. The offset (dx, dy) is in pixels from
+/// `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
     /// Origin in pixels of the frame; (0, 0) is the centre of the top left pixel.
@@ -36,20 +38,20 @@ pub(crate) struct FixedConic {
     pub(crate) depth_shift: u8,
 }
 
-/// Returns 2 to a power from -1022 to 1023, exactly.
+/// Returns 2 to the power `exponent`, which is limited to -1022 to 1023. The result is exact.
 pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
-/// Returns the smallest n with `value < 2^n`; -1022 for 0.
+/// Returns the smallest n with `value < 2^n`, or -1022 if the value is 0.
 fn exponent_above(value: f64) -> i32 {
     ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
-/// Position, value and size of an ellipse that is positive inside.
+/// Position, value and size of an ellipse, which is a conic that is positive inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ellipse {
-    /// Position of the greatest value, in pixels of the frame.
+    /// Position of the conic's greatest value, in pixels of the frame.
     pub(crate) peak: [f64; 2],
     /// The greatest value of the conic.
     pub(crate) value: f64,
@@ -58,13 +60,13 @@ pub(crate) struct Ellipse {
 }
 
 impl Ellipse {
-    /// Returns the reciprocals of half the width and half the height.
+    /// Returns 1 / (half the width) and 1 / (half the height), per pixel.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Returns the least and greatest x and y in pixels of the frame. Returns `None` if the conic is no ellipse (NaN,
-    /// overflow, no size).
+    /// Returns the smallest and largest x and y, in pixels of the frame. Returns `None` if the conic is no ellipse:
+    /// NaN, overflow or size 0.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -86,7 +88,7 @@ impl Conic {
         }
     }
 
-    /// Returns the same conic with another origin.
+    /// Returns the same conic, expressed around another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
         let dx = origin[0] - self.origin[0];
         let dy = origin[1] - self.origin[1];
@@ -99,18 +101,18 @@ impl Conic {
         }
     }
 
-    /// Returns the value at (dx, dy) from the origin.
+    /// Returns the conic's value at the offset (dx, dy) from its origin.
     fn at(&self, dx: f64, dy: f64) -> f64 {
         let row = (self.xx * dx + self.xy * dy) + self.x;
         (row * dx + (self.yy * dy + self.y) * dy) + self.constant
     }
 
-    /// Returns `4 xx yy - xy^2`, which is positive for an ellipse.
+    /// Returns the determinant `4 xx yy - xy^2`, which is positive for an ellipse.
     fn determinant(&self) -> f64 {
         4.0 * self.xx * self.yy - self.xy * self.xy
     }
 
-    /// Returns the position, value and size of the conic, if it is an ellipse.
+    /// Returns the position, value and size of the conic as an ellipse. They are meaningless for other conics.
     pub(crate) fn ellipse(&self) -> Ellipse {
         let inverse = reciprocal_double(self.determinant());
         let dx = (self.xy * self.y - 2.0 * self.yy * self.x) * inverse;
@@ -124,13 +126,13 @@ impl Conic {
         }
     }
 
-    /// Rounds the conic to fixed point, for evaluation on the frame's pixels of `rectangle` (first and last along x,
-    /// and along y).
+    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. The rectangle is given by
+    /// its first and last pixel along x, and along y.
     ///
-    /// The values are scaled by a power of two, as large as fits 46 bits on the whole rectangle. Coefficients are
-    /// rounded around pixel (px, py) and restated exactly for pixel (0, 0). So the error grows from (px, py) and not
-    /// from the picture's corner. If this pixel is the one of the peak, whose value is `peak`, no small sphere
-    /// vanishes.
+    /// The values are scaled by a power of two, the largest with which they fit 46 bits on the whole rectangle. The
+    /// coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as origin. So the
+    /// rounding error grows with the distance from (px, py), and not from the picture's corner. Callers pass the pixel
+    /// of the greatest value, which is `peak`; then even a small sphere keeps a covered pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
@@ -145,19 +147,20 @@ impl Conic {
         }
     }
 
-    /// Returns the greatest absolute value at the corners of a rectangle. Together with the peak it bounds a concave
-    /// conic.
+    /// Returns the greatest absolute value at the corners of a rectangle. A concave conic is nowhere larger in the
+    /// rectangle than this value or its peak.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
         let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
         values.fold(0.0, f64::max)
     }
 
-    /// Returns the value at a pixel of the frame.
+    /// Returns the conic's value at a pixel of the frame.
     fn at_pixel(&self, x: i32, y: i32) -> f64 {
         self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1])
     }
 
-    /// Rounds the coefficients to integers around pixel (px, py), then restates them exactly around pixel (0, 0).
+    /// Rounds the coefficients to integers with pixel (px, py) as origin, then converts them exactly to pixel (0, 0) as
+    /// origin.
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
         let [xx, xy, yy] = [self.xx, self.xy, self.yy].map(whole);
         let [x, y] = [self.x, self.y].map(whole);
@@ -174,8 +177,8 @@ impl Conic {
     }
 }
 
-/// Converts a quadratic from frame lines to rows, which are every `step`-th line from `first`. The values at the pixels
-/// stay exactly the same.
+/// Converts a quadratic over frame lines to one over rows, which are every `step`-th line from line `first` on. The
+/// values at the pixels stay exactly the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

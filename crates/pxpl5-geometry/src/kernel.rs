@@ -1,9 +1,10 @@
 //! Set-up of triangles as code of the graphics processor: i860 assembly, and its memory layout.
 //!
-//! A [`Kernel`] computes the words of renderer commands and the bins of Gouraud or Phong triangles from the display
-//! list. It does the transform, guard band test, light or normals, snapping, planes, the restatement for a field, and
-//! regions. For triangles not wholly inside the guard band it calls the clipper, which is a program of its own. Of
-//! steep planes it flattens only the planes of clipped pieces.
+//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. It computes the words of their renderer
+//! commands and writes the commands into bins, one bin for each region. Its steps are: transform, guard band test,
+//! light or normals, snapping to subpixels, planes, conversion of a frame's lines to a field's rows, and regions.
+//! Triangles that are not wholly inside the guard band go to the clipper, a separate program. The kernel replaces steep
+//! planes by flat ones only for pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -14,14 +15,15 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The computation equals the native code, so that the words are the same bit for bit. 1 / w is a seed and two Newton
-//! steps in single precision. Normals are turned by a matrix and not normalized again. Light is computed in the
-//! coordinates of the normals. kernels/parameters.s defines registers and memory layouts. Each choice of [`Kernel`]
-//! concatenates its own source files, like a linker. This crate does not assemble or run the sources.
+//! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
+//! computed from a first approximation by two Newton steps, in single precision. A matrix turns the normals, and they
+//! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
+//! registers and memory layouts. Each choice of [`Kernel`] concatenates its own source files, like a linker. This crate
+//! neither assembles nor runs the sources.
 
 mod between;
 
-/// Source of the clipper's interpolation for surfaces that depend on normals.
+/// Source of the clipper's interpolation, for triangles whose surface values depend on normals.
 macro_rules! clip_with_normals {
     ($surface:literal) => {
         concat!(include_str!("../kernels/clip_away.s"), "\n", include_str!(concat!("../kernels/clip_", $surface, ".s")))
@@ -39,36 +41,37 @@ use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 /// Optimization level of the kernel's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// Code of a compiler without optimization: every statement goes through the stack frame. Everything is inlined, so
-    /// the code exceeds the instruction cache.
+    /// Code as from a compiler without optimization: every statement loads its operands from the stack frame and stores
+    /// its result there. All functions are inlined, so the code exceeds the instruction cache.
     Straight,
-    /// Code of a good compiler of about 1990: functions, loops, locals in registers, scalar operations
+    /// Code as from a good compiler of about 1990: functions, loops, local variables in registers, scalar operations
     /// (kernels/compiled_rules.md).
     Compiled,
-    /// Code in dual-instruction mode: two loops over batches, each of which fits the instruction cache.
+    /// Hand-written code in dual-instruction mode: two loops over batches of vertices or triangles. Each loop fits the
+    /// instruction cache.
     ///
-    /// Most of the source is linear code, which the i860's assembler does not support. The assembler of this project
-    /// schedules the linear code first.
+    /// Most of the source is linear code: single operations in order, without a choice of clocks and pipelines. The
+    /// i860's assembler does not support it. This project's assembler first schedules the linear code.
     Dual,
 }
 
-/// Values that a triangle's planes interpolate besides depth.
+/// Surface values of a triangle that planes interpolate in addition to depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
-    /// Colours that are lit at the corners.
+    /// Colours, computed by lighting each corner.
     Gouraud,
-    /// Colours as the display list has them.
+    /// Colours of the display list, without lighting.
     Precomputed,
     /// Normals in eye coordinates, for Phong shading.
     Phong,
 }
 
-/// Storage of corners in the display list.
+/// Arrangement of triangle corners in the display list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelList {
     /// Triangles with three corners each ([`display_list_words`]).
     Triangles,
-    /// Strips, in which each vertex makes a triangle with the two vertices before it ([`vertex_words`]).
+    /// Strips: each vertex makes a triangle with the two vertices before it ([`vertex_words`]).
     Strips,
 }
 
@@ -79,12 +82,12 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 in regions of 128 x 120.
     Field,
-    /// A frame in regions of 128 x 128, of a size given by the parameter block. Examples are a face of a cube and other
-    /// displays.
+    /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives its
+    /// size.
     Grid,
 }
 
-/// The choice of code for one kind of triangle and picture.
+/// The choice of kernel code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
     /// Optimization level: compiled or hand-written.
@@ -95,49 +98,52 @@ pub struct Kernel {
     pub list: KernelList,
     /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// True if the kernel puts commands into bins, false if all commands go to every region.
+    /// True if the kernel puts commands into the bins of the touched regions. False if it lists all commands for every
+    /// region.
     pub binned: bool,
-    /// True if back faces are dropped.
+    /// True if the kernel drops back faces.
     pub culls: bool,
-    /// True if an unbinned kernel keeps the bounding box of each command.
+    /// True if a kernel without bins also stores the bounding box of each command.
     ///
-    /// The box follows the address of the table of bins: low x, high x, low y, high y, in 1/16 px of the frame.
+    /// The boxes are at the address that a kernel with bins uses for its table of bins. A box is: low x, high x, low y,
+    /// high y, in 1/16 px of the frame.
     pub keeps_boxes: bool,
     /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
     ///
-    /// Registers 19 and 21 then hold the right eye's destination of commands and its parameter block. Requires
-    /// [`Kernel::can_serve_both_eyes`].
+    /// Register 19 then holds the address for the right eye's commands, and register 21 the address of its parameter
+    /// block. Requires [`Kernel::can_serve_both_eyes`].
     pub both_eyes: bool,
 }
 
-/// Instruction heads of a triangle's command, in the order of the kernel's parameter block.
+/// First words of the instructions in a triangle's command, in the order of the kernel's parameter block.
 ///
-/// The order is: enable, edge, depth compare, depth load, three components, colour (Phong).
+/// The order is: enable, edge, depth compare, depth load, three components, colour (Phong only).
 pub type Heads = [Word; 8];
 
-/// Number of words of a triangle in the display list.
+/// Number of words that a triangle takes in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
 
-/// Number of words of a strip's vertex in the display list.
+/// Number of words that a strip's vertex takes in the display list.
 pub const VERTEX_WORDS: usize = 8;
 
 /// Number of words of the parameter block.
 pub const PARAMETER_WORDS: usize = 128;
 
-/// Single-precision constants whose bits the kernels use: 1.5 * 2^23 and 2^23.
+/// Single-precision constant 1.5 * 2^23. A number that is added to it is rounded to an integer in the low bits of the
+/// sum.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
-/// A number greater than any distance of two corners within the guard band, in subpixels.
+/// 2^18: greater than any distance between two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
 
-/// A word that reverses the order of biased integers when they are subtracted from it.
+/// Minuend that reverses the order of biased integers: the larger integer gives the smaller difference.
 const FLIP: Word = 0x9700_0000;
 
 impl Kernel {
     /// Returns the kernel for a picture of triangles with separate corners.
     ///
-    /// Returns `None` for region sizes that [`KernelPicture`] lacks. Without bins, only NTSC frames and fields have a
-    /// kernel.
+    /// Returns `None` if [`KernelPicture`] has no kind with these region sizes. A kernel without bins exists only for
+    /// NTSC frames and fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
@@ -145,7 +151,7 @@ impl Kernel {
         Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false, both_eyes: false })
     }
 
-    /// Returns true if this kernel has a variant that makes the commands of both eyes in one pass over the triangles.
+    /// Returns true if a variant of this kernel makes the commands of both eyes in one pass over the triangles.
     #[must_use]
     pub fn can_serve_both_eyes(&self) -> bool {
         self.surface == KernelSurface::Precomputed
@@ -155,9 +161,9 @@ impl Kernel {
             && !self.keeps_boxes
     }
 
-    /// Returns the source in i860 assembly, whose entry is the label `start`.
+    /// Returns the source in i860 assembly. Execution begins at the label `start`.
     ///
-    /// For [`Schedule::Dual`] the source contains linear stretches.
+    /// For [`Schedule::Dual`], the assembler of this project must first schedule the linear parts of the source.
     #[must_use]
     pub fn source(&self) -> String {
         let bins = self.bins();
@@ -175,7 +181,7 @@ impl Kernel {
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
             Schedule::Compiled => [self.compiled(self.compiled_loop()), vec![bins]].concat(),
-            // Rarely used code comes last, so that bins do not share cache sets with the end of the second loop.
+            // Rarely used code comes last. So the bins use other cache sets than the end of the second loop.
             Schedule::Dual => {
                 let last = [bins_of_frames, include_str!("../kernels/scheduled_doubt.s")];
                 [self.dual(), last.to_vec(), self.right_eye()].concat()
@@ -184,13 +190,13 @@ impl Kernel {
         [common.as_slice(), &triangle].concat().join("\n")
     }
 
-    /// Returns the source of the kernel's clipper, whose entry is the label `clipper`.
+    /// Returns the source of the kernel's clipper. Execution begins at the label `clipper`.
     ///
     /// The address of the clipper goes into [the parameter block](Self::parameters). The source is the same for all
-    /// schedules.
+    /// optimization levels.
     #[must_use]
     pub fn clipper_source(&self) -> String {
-        // Finish and interpolation depend on the surface; the rest of the clipper is common.
+        // The last step and the interpolation depend on the surface; the rest of the clipper is common to all surfaces.
         let (finish, extras) = match self.surface {
             KernelSurface::Gouraud => (include_str!("../kernels/finish_gouraud.s"), clip_with_normals!("gouraud")),
             KernelSurface::Precomputed => {
@@ -243,7 +249,8 @@ impl Kernel {
         ]
     }
 
-    /// Returns the compiled main loop over triangles: the addressing of corners, the loop, and the code for a corner.
+    /// Returns the source of the compiled main loop over triangles, in three parts: the addressing of corners, the
+    /// loop, and the code for one corner.
     const fn compiled_loop(&self) -> [&'static str; 3] {
         let one = include_str!("../kernels/compiled_one.s");
         let main = include_str!("../kernels/compiled.s");
@@ -285,7 +292,7 @@ impl Kernel {
     fn dual(&self) -> Vec<&'static str> {
         let strips = self.list == KernelList::Strips;
         let (vertices, setup) = self.schedules();
-        // With bins, the expressions are restated for a field once the regions are known.
+        // With bins, expressions are converted from the frame's lines to the field's rows after the regions are known.
         let field = self.picture == KernelPicture::Field;
         let [edges, reference, planes] = match field && !self.binned {
             true => [
@@ -299,7 +306,7 @@ impl Kernel {
                 include_str!("../kernels/planes_frame.s"),
             ],
         };
-        // Regions and the tail of the loop depend on bins and on the picture.
+        // The code for regions and the end of the loop depend on bins and on the picture.
         let (regions, tail) = match (self.binned, self.picture) {
             (false, _) if self.keeps_boxes => (
                 concat!(include_str!("../kernels/regions_later.s"), "\n", include_str!("../kernels/regions_kept.s")),
@@ -371,7 +378,7 @@ impl Kernel {
         ]
     }
 
-    /// Returns the second pass of a batch through the first loop, for kernels for both eyes.
+    /// Returns the source of a second pass of each batch through the first loop, for kernels that serve both eyes.
     fn right_eye(&self) -> Vec<&'static str> {
         if !self.both_eyes {
             return Vec::new();
@@ -389,8 +396,8 @@ impl Kernel {
 
     /// Returns the parts of the scheduled code that depend on the surface.
     ///
-    /// The parts are: size of a command; code before, for and after the corners' surface; the side of a triangle; the
-    /// words of the command.
+    /// The parts are: size of a command; code before, in and after the computation of the corners' surface values; code
+    /// for the two sides of a triangle; code for the words of the command.
     fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
         // Phong commands have the colour as a further word, so they are longer.
         match (self.surface, strips) {
@@ -437,8 +444,8 @@ impl Kernel {
         }
     }
 
-    /// Returns the scheduler settings of the shortest schedules found, for both loops: window, eagerness, reserve,
-    /// slope and shake.
+    /// Returns the settings with which the scheduler found the shortest code, for the first and the second loop. The
+    /// five numbers are: window, eagerness, reserve, slope and shake.
     const fn schedules(&self) -> (&'static str, &'static str) {
         use KernelList::{Strips, Triangles};
         use KernelSurface::{Gouraud, Phong, Precomputed};
@@ -473,7 +480,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the parameter block for a view. `clipper` is the start address of the clipper.
+    /// Returns the parameter block of a view. `clipper` is the address at which the clipper's code begins.
     #[must_use]
     pub fn parameters(
         &self,
@@ -500,7 +507,8 @@ impl Kernel {
         words.singles(320, &transform.normals.to_world(light.direction));
         words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, clip::MIN_W, MAX_CLIP]);
         words.integers(360, &[20 << 23]);
-        // Line 0 with bins, since the restatement for a field comes later.
+        // Without bins, planes refer to the picture's first line. With bins, they refer to line 0 of the frame, and the
+        // conversion to a field's rows comes later.
         let line = if self.binned { 0 } else { transform.viewport.first_line() };
         words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
@@ -520,7 +528,8 @@ impl Kernel {
         words.0
     }
 
-    /// Returns the surface's unit in the planes, and half a unit minus its bias, for each side of a triangle.
+    /// Returns, for the front and the back of a triangle, the scale from surface values to plane values, and half a
+    /// unit minus the bias of that scale.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -556,7 +565,7 @@ impl Kernel {
 }
 
 impl KernelPicture {
-    /// Returns the kind of a picture; `None` if no kernel supports the picture.
+    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports it.
     pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
         let grid = viewport.grid();
         match viewport.lines() {
@@ -577,23 +586,24 @@ impl KernelPicture {
     }
 }
 
-/// Returns the last subpixel of a picture across and down the frame, and its number of regions across.
+/// Returns the last subpixel of a picture along x, its last subpixel along y in the frame, and its number of regions
+/// along x.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
 }
 
-/// Returns the distance from pixel (0, 0), in subpixels along either axis, within which every point is inside the guard
-/// band.
+/// Returns a distance from pixel (0, 0), in subpixels. Every point whose x and y are at most this far away is inside
+/// the guard band.
 ///
-/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the far side. It is symmetric around the picture's
-/// middle, so the near side is closer by the picture's size. One pixel is left for rounding.
+/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and below. It is symmetric around the
+/// middle of the picture, so its left and top ends are nearer by the picture's size. One pixel is left for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
-/// A parameter block under construction. Places are in bytes, as in kernels/parameters.s.
+/// A parameter block under construction. Positions are in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
 impl ParameterWords {
@@ -610,7 +620,7 @@ impl ParameterWords {
     }
 }
 
-/// Returns the XOR and AND masks that make the area's high word negative for culled triangles.
+/// Returns two masks, for XOR and AND, that make the high word of the area negative if the triangle is culled.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
@@ -621,11 +631,11 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the work before the triangles of a pass: the labels `edit`, `reset` and `place`
+/// Returns the source of the work before the triangles of a pass. Its labels are `edit`, `reset` and `place`
 /// (kernels/place.s).
 ///
-/// `place` writes the parts of [`Kernel::parameters`] and of [`crate::sphere_kernel`]'s parameters that depend on a
-/// view and a light.
+/// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
+/// [`crate::sphere_kernel`].
 #[must_use]
 pub fn place_source() -> String {
     [
@@ -637,7 +647,7 @@ pub fn place_source() -> String {
     .join("\n")
 }
 
-/// Returns a row of the matrix of normals, in units of the command's normal.
+/// Returns a row of the matrix that turns normals, scaled to the units of normals in commands.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
     [x, y, z, 0.0]
@@ -659,10 +669,10 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     words
 }
 
-/// Returns a vertex of a strip in the format of the display list, with a normal of unit length.
+/// Returns a strip's vertex in the format of the display list, with a normal of unit length.
 ///
-/// The two vertices with `begins` make no triangle. The corners of a triangle are the vertex two before, the vertex one
-/// before, and this vertex, in this order, whatever the winding.
+/// `begins` is true for the first two vertices of a strip, which make no triangle. The corners of a triangle are the
+/// second last vertex, the last vertex and this vertex. The order is the same for both windings.
 #[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);

@@ -1,9 +1,9 @@
-//! Set-up of several triangles together, one in each lane of a vector unit.
+//! Set-up of several triangles together, each in one lane of a vector unit.
 //!
-//! Every lane computes the same bits as [`crate::ScreenTriangle`] and [`crate::plane`] do for one triangle. Integers of
-//! more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact. The
-//! loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]). They use no operation in which
-//! the units could differ.
+//! Every lane computes the same bits as [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle.
+//! Products of two differences of corner coordinates are below 2^34, so they do not fit 32 bits. They are held as
+//! doubles, which represent them exactly. The loops are plain Rust, compiled once for each vector unit (see
+//! [`mod@multiversion`]). All operations in the loops give the same result on every unit.
 
 use crate::newton;
 use crate::outline::SUBPIXELS;
@@ -18,15 +18,15 @@ use pxpl5_wire::{Linear, LinearLanes, TriangleBatch, format};
 /// One value for each triangle.
 pub(crate) type EachLane<T> = [T; LANES];
 
-/// Up to [`LANES`] triangles that need no clipping, with the values at their corners.
+/// Up to [`LANES`] triangles that need no clipping, with the surface values at their corners.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<'a> {
     len: usize,
-    /// Vertices, indexed by corner, then by triangle.
+    /// Vertices of the triangles: first index is the corner, second index is the triangle.
     corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-/// Corner of a triangle of which nothing is visible.
+/// Placeholder for the corners of an invisible triangle.
 static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
 
 impl Default for TriangleLanes<'_> {
@@ -53,9 +53,9 @@ impl<'a> TriangleLanes<'a> {
         self.len = 0;
     }
 
-    /// Adds a triangle and returns true, or returns false if the triangle needs clipping.
+    /// Adds a triangle and returns true. Returns false and adds nothing if the triangle needs clipping.
     ///
-    /// All corners must be seen in the same view.
+    /// All corners must come from the same view.
     ///
     /// # Panics
     /// If [`LANES`] triangles have already been added.
@@ -72,7 +72,7 @@ impl<'a> TriangleLanes<'a> {
         inside
     }
 
-    /// Adds a placeholder for a triangle of which nothing is visible.
+    /// Adds a placeholder for an invisible triangle.
     ///
     /// # Panics
     /// If [`LANES`] triangles have already been added.
@@ -84,14 +84,14 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// Values at the corners of some triangles, indexed by corner, then by triangle.
+/// Values at the corners of the triangles. First index is the corner, second index is the triangle.
 struct CornerValues {
-    /// Screen x in 1/16 px.
+    /// Distance from the picture's left border in 1/16 px.
     x: [EachLane<i32>; 3],
     y: [EachLane<i32>; 3],
     z: [EachLane<f64>; 3],
     facing: [EachLane<f32>; 3],
-    /// Colour or normal, indexed by component first.
+    /// Colour or normal: first index is the component, then corner and triangle.
     surface: [[EachLane<f32>; 3]; 3],
 }
 
@@ -118,7 +118,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces the expressions by a constant in lanes where `there` is 0; elsewhere all bits of `there` are 1.
+/// Replaces the expressions by `constant` in the lanes where `there` is 0. In the other lanes all bits of `there` must
+/// be 1.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -129,17 +130,17 @@ fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> Li
     all
 }
 
-/// The edge and plane expressions of some triangles.
+/// Edge and plane expressions of up to [`LANES`] triangles.
 #[derive(Clone, Debug)]
 struct Expressions {
     edges: [LinearLanes; 3],
-    /// Depth, then the components.
+    /// Expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// Number of flattened planes of each triangle.
+    /// For each triangle, the number of planes that were too steep and became flat.
     flattened: EachLane<u8>,
 }
 
-/// The expressions of one triangle: edges, depth, and the components of colour or normal.
+/// Expressions of one triangle: three edges, depth, and three components of colour or normal.
 type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
@@ -152,7 +153,8 @@ impl Expressions {
     }
 }
 
-/// The expressions of some Gouraud triangles. The edges of a triangle without area exclude every pixel.
+/// Expressions of up to [`LANES`] Gouraud triangles. If a triangle has no area, its edge expressions exclude every
+/// pixel.
 #[derive(Clone, Debug)]
 pub struct GouraudLanes(Expressions);
 
@@ -175,7 +177,7 @@ impl GouraudLanes {
     }
 }
 
-/// The expressions of some Phong triangles. The edges of a triangle without area exclude every pixel.
+/// Expressions of up to [`LANES`] Phong triangles. If a triangle has no area, its edge expressions exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct PhongLanes(Expressions);
 
@@ -199,14 +201,14 @@ impl PhongLanes {
 }
 
 impl Transform {
-    /// Sets up each triangle like [`Self::gouraud`] does, including the edges and planes. It does not test for touched
+    /// Sets up each triangle like [`Self::gouraud`], including edges and planes, but without a search for touched
     /// regions.
     #[must_use]
     pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
-    /// Sets up each triangle like [`Self::phong`] does, including the edges and planes. It does not test for touched
+    /// Sets up each triangle like [`Self::phong`], including edges and planes, but without a search for touched
     /// regions.
     #[must_use]
     pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
@@ -226,12 +228,12 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// Positions of a picture's rows among the lines of the frame.
+/// Relation between a picture's rows and the lines of the frame: row r is frame line `first_line + r * line_step`.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
     first_line: i32,
-    /// Last subpixel of the frame, across and down.
+    /// Last subpixel of the frame along x, and along y.
     last: [i32; 2],
 }
 
@@ -244,7 +246,8 @@ impl PictureRows {
         }
     }
 
-    /// Converts expressions from frame lines to the rows of the picture, like [`screen::for_rows`].
+    /// Converts expressions over frame lines to expressions over picture rows, like [`screen::for_rows`]. A field has
+    /// every second line of the frame.
     #[inline(always)]
     fn restate(&self, frame: LinearLanes) -> LinearLanes {
         let mut all = frame;
@@ -287,7 +290,8 @@ fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expres
     Expressions { edges, planes: planes_through, flattened }
 }
 
-/// Returns true for the triangles that face away from the eye on average, as in [`crate::light::turned`].
+/// Returns true for each triangle whose three normals, on average, face away from the eye. The rule is that of
+/// [`crate::light::turned`].
 #[inline(always)]
 fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     let mut away = [false; LANES];
@@ -297,7 +301,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns a component at the corners, negated if the triangle faces away, plus `half` for rounding.
+/// Returns one component at the three corners, plus `half` for rounding. The component is negated for triangles that
+/// face away.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -313,7 +318,7 @@ fn values(corner: &EachLane<f32>, away: &EachLane<bool>, half: f32) -> EachLane<
     out
 }
 
-/// Returns all ones for the triangles that have an area, else 0.
+/// Returns a mask for each triangle: all ones if it has an area, else 0.
 #[inline(always)]
 fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -323,7 +328,7 @@ fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns all ones for the counterclockwise triangles, else 0.
+/// Returns a mask for each triangle: all ones if its corners run counterclockwise, else 0.
 #[inline(always)]
 fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -333,9 +338,9 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns corners in clockwise order by exchanging two corners where `swapped` is set.
+/// Returns the corners in clockwise order. In the lanes where `swapped` is all ones, two corners are exchanged.
 ///
-/// Masks do the exchange, since compilers would turn a choice of values into a choice of addresses.
+/// Masks exchange the values. With a conditional expression, compilers would choose between addresses, which is slow.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
@@ -348,7 +353,7 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
     [*p, second, third]
 }
 
-/// Returns the edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
+/// Returns the expression of the edge between two corners, over the pixels of the frame, as in [`crate::Outline`].
 #[inline(always)]
 fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
     let mut out = LinearLanes::default();
@@ -366,14 +371,14 @@ fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linea
     out
 }
 
-/// Divides an integer below 2^34 by 16 and rounds down. It rounds the quotient minus 15/32 to the nearest integer.
+/// Divides an integer below 2^34 by 16 and rounds down: it rounds the quotient minus 15/32 to the nearest integer.
 #[inline(always)]
 fn sixteenth(k: f64) -> i32 {
     const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
     plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
 }
 
-/// Values common to all planes of each triangle; see [`plane::Planes`].
+/// Values that all planes of a triangle have in common, for each triangle; see [`plane::Planes`].
 struct LanePlanes {
     twice_area: EachLane<f64>,
     x: [EachLane<f64>; 2],
@@ -384,8 +389,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// Computes the common values of the planes. The winding does not matter: it changes the signs of products and area
-    /// alike.
+    /// Computes the values that all planes of a triangle have in common. Either winding gives the same planes, since it
+    /// changes the signs of the cross products and of the area.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;
@@ -403,13 +408,14 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns the planes through three values of each triangle at the frame's pixels, and counts the flattened planes.
+    /// Returns the plane through three corner values of each triangle, over the frame's pixels. Counts the planes that
+    /// became flat.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
-            // Slopes from cross products, then the value at the reference pixel.
+            // Compute slopes from cross products, then the value at the reference pixel.
             let d1 = q[i] - p[i];
             let d2 = r[i] - p[i];
             let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
@@ -418,13 +424,13 @@ impl LanePlanes {
             let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
             let a = plane::rounded(slope_x);
             let b = plane::rounded(slope_y);
-            // Restate the plane for pixel (0, 0), modulo 2^32.
+            // Convert to the value at pixel (0, 0), modulo 2^32.
             let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
             out.a[i] = a;
             out.b[i] = b;
             out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
-        // Steep planes are rare, so they are replaced afterwards.
+        // Steep planes are rare, so they are replaced after the loop.
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
         }
@@ -443,7 +449,7 @@ fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes,
     }
 }
 
-/// Returns the distance from one corner to another, in subpixels.
+/// Returns the distance from one corner to another along one axis, in subpixels.
 #[inline(always)]
 fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -453,7 +459,8 @@ fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     out
 }
 
-/// Returns the pixel in the middle of the visible part of the corners' range, as in [`crate::Outline`].
+/// Returns the pixel in the middle of the triangle's extent along one axis, limited to the picture, as in
+/// [`crate::Outline`].
 #[inline(always)]
 fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -465,7 +472,7 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// Returns the distance from a corner to the centre of a pixel, in pixels.
+/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

@@ -1,33 +1,33 @@
-//! The part of a projection that spheres need.
+//! The part of a projection with which spheres are projected.
 
 use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
-/// Mapping from eye coordinates to pixels and depths, as far as spheres need it.
+/// Mapping from eye coordinates to pixels and depths, as needed for spheres.
 ///
-/// Depth is `constant + slope u` between 0 and 1. With t as the distance along -Z, u is 1/t under perspective and -t
-/// under a parallel projection.
+/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. Then u is 1/t under a perspective
+/// projection, and -t under a parallel projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     /// True if the projection is parallel, so that distance does not change sizes.
     pub(crate) parallel: bool,
-    /// Eye units per pixel along x and y, at distance 1 under perspective. The y step is negative, since pixel y grows
-    /// downwards.
+    /// Eye units per pixel along x and y, at distance 1 under perspective. The step along y is negative, since y grows
+    /// downwards for pixels and upwards for the eye.
     pub(crate) step: [f64; 2],
     /// Pixels per eye unit along x and y, at distance 1 under perspective.
     pub(crate) rate: [f64; 2],
     /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 under perspective.
     pub(crate) corner: [f64; 2],
-    /// Coefficients of t and 1 of an expression that is negative before the near plane (`near`) or positive behind the
-    /// far plane (`far`).
+    /// Coefficients of t and 1 in a linear expression of the distance t. The expression `near` is negative before the
+    /// near plane, and the expression `far` is positive behind the far plane.
     ///
-    /// The expression is depth, or depth - 1 for `far`, times t under perspective.
+    /// Under a parallel projection, they are depth and depth - 1. Under perspective, they are these values times t.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// Largest distance t that counts as behind the eye.
+    /// Largest distance t along -Z that counts as behind the eye.
     pub(crate) least: f64,
-    /// Coefficients of the depth in units of the depth expression, which is `base + reach u`.
+    /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
     pub(crate) base: f64,
     pub(crate) reach: f64,
 }
@@ -35,19 +35,19 @@ pub(crate) struct Lens {
 /// Distance from the near to the far plane, in units of the depth expression.
 pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
 
-/// Returns the position of the centre of the frame's first pixel in normalized device coordinates.
+/// Returns the centre of the frame's pixel (0, 0) in normalized device coordinates.
 pub(crate) fn first_pixel(width: u32, lines: u32) -> [f64; 2] {
     [1.0 / f64::from(width) - 1.0, 1.0 - 1.0 / f64::from(lines)]
 }
 
-/// Returns the factors from a projection's scale to pixels: half the frame's width, and minus half its height.
+/// Returns two factors from normalized device coordinates to pixels: half the frame's width, and minus half its height.
 pub(crate) fn half_frame(width: u32, lines: u32) -> [f64; 2] {
     [f64::from(width) * 0.5, f64::from(lines) * -0.5]
 }
 
 impl Lens {
-    /// Creates a lens from a perspective or parallel projection along -Z, possibly off centre. Returns `None` for other
-    /// matrices.
+    /// Creates a lens from a perspective or parallel projection along -Z. The projection can be off centre. Returns
+    /// `None` for other matrices.
     pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
         // Only matrices without rotation and shear are supported.
         if !projection.is_zero_at(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
@@ -58,7 +58,7 @@ impl Lens {
             (0.0, 1.0) if projection.is_zero_at(&[(0, 2), (1, 2)]) => true,
             _ => return None,
         };
-        // Both kinds of projection give the same four numbers.
+        // For both kinds of projection, compute the same four numbers.
         let [shift_x, shift_y, slope, constant] = if parallel {
             [-projection.cell(0, 3), -projection.cell(1, 3), projection.cell(2, 2), projection.cell(2, 3)]
         } else {
@@ -83,12 +83,12 @@ impl Lens {
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Returns true if distance t along -Z is before the near plane or behind the eye.
+    /// Returns true if a point at distance t along -Z is before the near plane or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }
 
-    /// Returns true if distance t is behind the far plane. Under perspective t must be positive.
+    /// Returns true if a point at distance t along -Z is behind the far plane. Under perspective, t must be positive.
     pub(crate) fn is_beyond_far(&self, t: f64) -> bool {
         self.far[0] * t + self.far[1] > 0.0
     }
@@ -99,8 +99,8 @@ impl Lens {
         self.base + self.reach * u
     }
 
-    /// Returns the pixel coordinates of an eye position in the plane t = 1, or in any plane if the projection is
-    /// parallel.
+    /// Returns the pixel coordinates of a point (x, y) of the plane t = 1 in eye coordinates. Under a parallel
+    /// projection, the point can be in any plane.
     pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
         [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }

@@ -24,9 +24,9 @@
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). A triangle inside one region, the
 //!    common case, needs one comparison per side. [`Transform::bin`] and [`Transform::touched`] stop here.
-//! 7. **Set up** on demand. Edges are exact integers: at least 0 is inside, and the tie rule is folded in, so that each
-//!    pixel of a shared edge is drawn once. Planes give depth, colour or normal. A sphere is one quadratic, with a root
-//!    for depth.
+//! 7. **Set up** on demand. Edge values are exact integers, and are at least 0 inside. They include the tie rule, so
+//!    that each pixel of a shared edge is drawn once. Planes give depth, colour or normal. A sphere is one quadratic,
+//!    with a root for depth.
 //!
 //! # Formats and limits
 //!

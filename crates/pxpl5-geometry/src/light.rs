@@ -1,20 +1,20 @@
-//! Lighting of vertices, and normals for deferred shading.
+//! Lighting of vertices, and transform of normals for shading at the end of the frame.
 
 use crate::view::{self, FromWorld};
 use crate::{Light, Triangle};
 use glam::Vec3;
 
-/// A light in the coordinates of a structure's normals.
+/// A light whose direction is converted to the coordinates of the display list's normals.
 pub(crate) struct ModelLight<'a> {
     normals: &'a NormalRows,
     direction: [f32; 3],
     light: &'a Light,
 }
 
-/// A matrix that turns unit normals from world to eye coordinates without normalizing them again.
+/// A matrix that turns unit normals from world to eye coordinates. The results are not normalized again.
 ///
-/// The matrix is the one of points, divided by the length of its longest row. So rotated normals keep unit length, with
-/// any uniform scale, and no component exceeds 1 for any matrix. The renderer normalizes at each pixel.
+/// The matrix is the one for points, divided by the length of its longest row. So with any uniform scale, turned
+/// normals keep unit length. For any matrix, no component exceeds 1. The renderer normalizes the normal at each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalRows {
     pub(crate) rows: [[f32; 3]; 3],
@@ -31,7 +31,7 @@ impl NormalRows {
         Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
     }
 
-    /// Returns a direction of eye coordinates in the coordinates of the world's normals.
+    /// Converts a direction from eye coordinates to the coordinates of the normals in the world.
     pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
         let rows = self.rows.map(|row| row.map(f64::from));
         let [x, y, z] = direction.map(f64::from);
@@ -44,7 +44,8 @@ impl NormalRows {
         [dot(x, normal), dot(y, normal), dot(z, normal)]
     }
 
-    /// Returns the cosine-like measure by which a unit normal at `position` faces the eye; negative if it faces away.
+    /// Returns the cosine between a unit normal at `position` and the direction to the eye, times the distance to the
+    /// eye. It is negative if the normal faces away.
     #[inline(always)]
     fn towards_eye(&self, position: Vec3, normal: [f32; 3]) -> f32 {
         let relative = [position.x - self.origin.x, position.y - self.origin.y, position.z - self.origin.z];
@@ -57,12 +58,12 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// Returns a normal of unit length, as the display list holds it; +Z if the normal has no direction.
+/// Returns a normal scaled to unit length, as the display list holds it. Returns +Z if the normal has no direction.
 #[inline(always)]
 pub(crate) fn unit_normal(normal: Vec3) -> [f32; 3] {
     let [x, y, z] = [f64::from(normal.x), f64::from(normal.y), f64::from(normal.z)];
     let square = view::dot([x, y, z], [x, y, z]);
-    // The root is computed for all inputs, since a branch would prevent vectorization.
+    // Compute the root for all inputs, since a branch would prevent vectorization.
     let inverse = 1.0 / square.sqrt();
     let unit = [(x * inverse) as f32, (y * inverse) as f32, (z * inverse) as f32];
     if (square > 0.0) & (square < f64::INFINITY) { unit } else { [0.0, 0.0, 1.0] }
@@ -73,8 +74,8 @@ impl<'a> ModelLight<'a> {
         Self { normals, direction: normals.to_world(light.direction), light }
     }
 
-    /// Returns the lit colour in 1/256 of a unit, 0 to 255 * 256. Lighting is two-sided: normals are taken to face the
-    /// eye.
+    /// Returns the lit colour in 1/256 of a colour unit, 0 to 255 * 256. Lighting is two-sided: a normal that faces
+    /// away is reversed.
     #[inline(always)]
     pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
         let n = unit_normal(normal);
@@ -86,13 +87,13 @@ impl<'a> ModelLight<'a> {
         [f32::from(red) * 256.0 * intensity, f32::from(green) * 256.0 * intensity, f32::from(blue) * 256.0 * intensity]
     }
 
-    /// Returns the [lit colour](Self::colour) at a corner of a triangle.
+    /// Returns the [lit colour](Self::colour) of a triangle at one of its corners.
     #[inline(always)]
     pub(crate) fn corner_colour(&self, triangle: &Triangle, corner: usize) -> [f32; 3] {
         self.colour(triangle.positions[corner], triangle.normals[corner], triangle.colours[corner])
     }
 
-    /// Returns the visible share of the colour, 0 to 1; 0 for NaN.
+    /// Returns the share of the colour that is visible, 0 to 1. NaN gives 0.
     #[inline(always)]
     fn intensity(&self, cosine: f32) -> f32 {
         let sum = self.light.ambient + self.light.diffuse * cosine.max(0.0);
@@ -100,20 +101,20 @@ impl<'a> ModelLight<'a> {
     }
 }
 
-/// Returns three normals in eye coordinates, all negated if the surface faces away.
+/// Returns three normals in eye coordinates. If the surface faces away from the eye, all three are negated.
 pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
     let [a, b, c] = [0, 1, 2].map(|i| normal_and_facing(rows, positions[i], normals[i]));
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
 }
 
-/// Returns a normal in eye coordinates, and the measure by which it faces the eye (negative if it faces away).
+/// Returns a normal in eye coordinates, and the degree to which it faces the eye (negative if it faces away).
 #[inline(always)]
 pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
     let n = unit_normal(normal);
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners, all negated if they face away from the eye on average.
+/// Returns the normals of three corners. If they face away from the eye on average, all three are negated.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

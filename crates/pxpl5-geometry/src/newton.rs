@@ -1,20 +1,21 @@
-//! Quotients, roots and rounding as the i860 computes them. The i860 has no divider and no square root.
+//! Quotients, square roots and rounding, computed as on the i860, which has no instruction for division or square root.
 //!
-//! A seed has 8 bits of fraction (`frcp`, `frsqr`), and Newton steps refine it. Rounding adds a large number and
-//! subtracts it again. The native code takes the same steps as the kernels, so that both give the same words.
+//! The instructions `frcp` and `frsqr` give a first approximation (seed) with 8 bits of fraction. Newton steps refine
+//! it. To round a number, the code adds a large number and subtracts it again. The native code takes the same steps as
+//! the i860 kernels, so both give the same words.
 
-/// Mask of the bits that a seed keeps.
+/// Mask of the bits of a double that a seed keeps.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
-/// 1.5 * 2^52. A double below 2^51 that is added to it is rounded to an integer, ties to even.
+/// 1.5 * 2^52. Adding it rounds a double below 2^51 in absolute value to an integer, ties to even.
 pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 fn seed(exact: f64) -> f64 {
     f64::from_bits(exact.to_bits() & SEED)
 }
 
-/// Returns the reciprocal of a positive number by two steps in single precision. The error is at most two units in the
-/// last place.
+/// Returns the reciprocal of a positive number, by two Newton steps in single precision. The error is at most two units
+/// in the last place.
 #[inline(always)]
 pub(crate) fn reciprocal(w: f32) -> f32 {
     let near = seed(1.0 / f64::from(w)) as f32;
@@ -22,26 +23,27 @@ pub(crate) fn reciprocal(w: f32) -> f32 {
     better * (2.0 - w * better)
 }
 
-/// Returns the reciprocal of a nonzero number by three steps in double precision; NaN for 0 and for infinities.
+/// Returns the reciprocal of a nonzero number, by three Newton steps in double precision. Returns NaN for 0 and for
+/// infinities.
 #[inline(always)]
 pub(crate) fn reciprocal_double(value: f64) -> f64 {
     (0..3).fold(seed(1.0 / value), |near, _| near * (2.0 - value * near))
 }
 
-/// Returns the reciprocal square root of a positive number by three steps in double precision; NaN for other numbers
-/// and infinity.
+/// Returns 1 / sqrt(value) of a positive number, by three Newton steps in double precision. Returns NaN for other
+/// numbers and for infinity.
 pub(crate) fn reciprocal_root(value: f64) -> f64 {
     let half = value * 0.5;
     (0..3).fold(seed(1.0 / value.sqrt()), |near, _| near * (1.5 - half * (near * near)))
 }
 
-/// Returns the square root of a positive number; NaN for other numbers.
+/// Returns the square root of a positive number. Returns NaN for other numbers.
 pub(crate) fn root(value: f64) -> f64 {
     value * reciprocal_root(value)
 }
 
-/// Returns the nearest integer, ties to even, for a number below 2^51. Larger numbers give meaningless bits, the same
-/// on every host.
+/// Returns the integer nearest to a number below 2^51 in absolute value, ties to even. For larger numbers the result is
+/// meaningless, but the same on every host.
 pub(crate) fn whole(value: f64) -> i64 {
     ((value + ROUND_DOUBLE).to_bits() as i64).wrapping_sub(ROUND_DOUBLE.to_bits() as i64)
 }

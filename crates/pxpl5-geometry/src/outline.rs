@@ -1,4 +1,4 @@
-//! Corners of a triangle on the screen, and its edges.
+//! Corners and edges of a triangle on the screen.
 
 use crate::regions::RegionMask;
 use pxpl5_wire::{Linear, format};
@@ -6,23 +6,24 @@ use pxpl5_wire::{Linear, format};
 /// Number of subpixels along one side of a pixel.
 pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
-/// Corners and depths of a triangle on the screen, and the regions that it touches.
+/// Corners and depths of a triangle on the screen, and the regions that the triangle touches.
 ///
-/// The corners run clockwise on the screen (y grows downwards), for either winding of the input.
+/// The corners run clockwise on the screen (y grows downwards), whether the input is clockwise or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outline {
-    /// Distance from the picture's left border in 1/16 px.
+    /// Distance of each corner from the picture's left border, in 1/16 px.
     pub x: [i32; 3],
-    /// Distance from the frame's top border in 1/16 px, also for a field.
+    /// Distance of each corner from the frame's top border, in 1/16 px. For a field too, the distance is measured on
+    /// the whole frame.
     pub y: [i32; 3],
-    /// Depths, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
+    /// Depth of each corner, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],
-    /// The regions that the triangle touches, which receive its commands.
+    /// Regions that the triangle touches. Their renderers receive its commands.
     pub regions: RegionMask,
 }
 
 impl Outline {
-    /// Returns twice the area in 1/256 square px; positive unless the corners are on one line.
+    /// Returns twice the area, in 1/256 square px. It is positive unless the corners are on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;
@@ -30,18 +31,19 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
-    /// Returns the edges from corner 0 to 1, 1 to 2 and 2 to 0, as expressions over the pixels of the *frame*.
+    /// Returns the edges from corner 0 to 1, from 1 to 2 and from 2 to 0, as expressions over the pixels of the
+    /// *frame*.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
     }
 
-    /// Returns the edge between two corners: twice the area of (from, to, pixel centre), in 1/16 square px, rounded
-    /// down.
+    /// Returns the edge between two corners. Its value at a pixel is twice the area of the triangle (from, to, pixel
+    /// centre), in 1/16 square px, rounded down.
     ///
-    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly if
-    /// `dx y - dy x + floor(k / 16)` is, so rounding changes no pixel. A pixel centre on the line belongs to the
-    /// triangle only along a top or left edge. For other edges k is reduced by one.
+    /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. It is at least 0 exactly if `dx y - dy
+    /// x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. A pixel whose centre is on the line
+    /// belongs to the triangle only if the edge is a top or left edge. For other edges, k is reduced by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
         let dx = self.x[to] - self.x[from];

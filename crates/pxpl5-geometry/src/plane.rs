@@ -1,57 +1,59 @@
-//! Planes: linear expressions through the values of three corners.
+//! Planes: linear expressions that pass through one value at each of three corners.
 //!
-//! Slopes are rounded to integers. At distance (dx, dy) from the reference pixel, the error of a plane is at most
-//! `(|dx| + |dy|) (1/2 + 2^-15) + 1` of the expression's last bit. It comes from rounding the slopes, rounding the
-//! constant (1/2), and the 64-bit floating-point steps (1/2, and 2^-15 per pixel, see [`MAX_SLOPE`]). The reference
-//! pixel is in the middle of the triangle's visible bounding box, so |dx| + |dy| is at most half the picture's width
-//! plus height. On the largest picture the error is below 1,026.
+//! Slopes are rounded to integers. At distance (dx, dy) from the reference pixel, the error of a plane's value is at
+//! most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the slopes adds 1/2 for each
+//! pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2, and 2^-15 for each pixel
+//! (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the triangle's bounding box. So
+//! |dx| + |dy| is at most half the sum of the picture's width and height. On the largest picture, the error is below
+//! 1,026.
 //!
-//! A depth slope may need more than 32 bits: a wall seen edge-on can pass through the whole depth range, 2^32, within a
-//! pixel. Expressions are evaluated modulo 2^32 at integer pixels. So coefficients modulo 2^32 give the right value at
-//! every pixel whose true value fits 32 bits, which includes every covered pixel.
+//! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range, 2^32,
+//! within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. So coefficients modulo 2^32 give
+//! the right value wherever the true value fits 32 bits. These pixels include every covered pixel.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
 use crate::stats::SetupStats;
 use pxpl5_wire::Linear;
 
-/// Steepest plane in units of the expression's last bit per pixel: the whole range of 32 bits in one subpixel.
+/// Steepest slope of a plane, in units of the expression's last bit per pixel: the whole range of 32 bits within one
+/// subpixel.
 ///
-/// A steeper plane, which only a triangle thinner than a subpixel can have, becomes *flat*: it takes the mean of its
-/// corners everywhere. [`SetupStats::flattened_planes`] counts such planes.
+/// Only a triangle thinner than a subpixel can have a steeper plane. Such a plane becomes *flat*: at every pixel, it
+/// has the mean of its values at the corners. [`SetupStats::flattened_planes`] counts such planes.
 ///
-/// The relative error of a slope is 2^-51, since Newton steps compute the reciprocal of the area. Below this limit its
-/// absolute error is 2^-15. Over the 2^13 px from a corner to the reference pixel no step exceeds 2^50, and the error
-/// of all steps together is less than 1/2.
+/// The relative error of a slope is 2^-51, since Newton steps compute the reciprocal of the area. For slopes up to this
+/// limit, the absolute error is 2^-15. A corner is at most 2^13 px away from the reference pixel. Over this distance,
+/// no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// 1.5 * 2^52. A number below 2^51 in absolute value that is added to it is rounded to an integer, ties to even.
+/// 1.5 * 2^52. Adding it rounds a number below 2^51 in absolute value to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Returns the nearest integer, modulo 2^32, of a number below 2^51 in absolute value.
+/// Returns the integer nearest to a number below 2^51 in absolute value, modulo 2^32.
 #[inline(always)]
 pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the flat plane that replaces a plane that is too steep.
+/// Returns the flat plane that replaces a too steep plane. Its value is the mean of the values `v` at the corners.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance from a corner (in subpixels) to the centre of a pixel, in pixels.
+/// Returns the distance along one axis from a corner (given in subpixels) to the centre of a pixel, in pixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// Values common to all planes of one triangle.
+/// Values that all planes of one triangle have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
     /// Distances from corner 0 to corners 1 and 2, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
-    /// 16 over twice the area: the factor from cross products to slopes per pixel.
+    /// Factor from cross products to slopes per pixel: 16 divided by twice the area.
     per_pixel: f64,
     /// Distance from corner 0 to the centre of the reference pixel, in pixels.
     to_reference: [f64; 2],
@@ -59,7 +61,8 @@ pub(crate) struct Planes {
 }
 
 impl Planes {
-    /// Computes the common values for the corners of `outline`. Planes are most exact at the frame's pixel `reference`.
+    /// Computes the values that all planes of `outline` have in common. Planes are most exact at `reference`, a pixel
+    /// of the frame.
     #[inline(always)]
     pub(crate) fn for_outline(outline: &Outline, reference: [i32; 2]) -> Self {
         let x = &outline.x;
@@ -73,9 +76,10 @@ impl Planes {
         }
     }
 
-    /// Returns the plane through three integers below 2^32 in absolute value, over the frame's pixels.
+    /// Returns the plane through the values `v` at the corners, over the frame's pixels. The values must be integers
+    /// below 2^32 in absolute value.
     ///
-    /// The cross products are sums of two products below 2^32 * 2^17, so they are exact.
+    /// A cross product is a sum of two products below 2^32 * 2^17, so it is exact.
     #[inline(always)]
     pub(crate) fn through(&self, v: [f64; 3], stats: &mut SetupStats) -> Linear {
         let d1 = v[1] - v[0];

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 pub struct RegionMask(u128);
 
 impl RegionMask {
-    /// Largest number of regions in a picture: region numbers are 0 to 127.
+    /// Largest number of regions in a picture. Their indices are 0 to 127.
     pub const CAPACITY: u32 = u128::BITS;
 
     pub const EMPTY: Self = Self(0);
 
-    /// Returns the set of one region. The set is empty if the region's number is [`Self::CAPACITY`] or more.
+    /// Returns the set that contains one region. The set is empty if the region's index is [`Self::CAPACITY`] or more.
     #[must_use]
     pub const fn only(region: RegionId) -> Self {
         if region.0 as u32 >= Self::CAPACITY {
@@ -38,24 +38,24 @@ impl RegionMask {
         Self::only(region).0 & self.0 != 0
     }
 
-    /// Returns the regions that are in this set or in `other`.
+    /// Returns the set of all regions that are in this set, in `other`, or in both.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Creates a set from its bits: bit n stands for region n.
+    /// Creates a set from its bits. Bit n is set if region n is in the set.
     pub(crate) const fn with_bits(bits: u128) -> Self {
         Self(bits)
     }
 
-    /// Returns the set as bits: bit n stands for region n.
+    /// Returns the set as bits. Bit n is set if region n is in the set.
     #[must_use]
     pub const fn bits(self) -> u128 {
         self.0
     }
 
-    /// Returns the regions in ascending order.
+    /// Returns the regions of the set in ascending order.
     pub fn iter(self) -> impl Iterator<Item = RegionId> {
         let mut rest = self.0;
         std::iter::from_fn(move || {

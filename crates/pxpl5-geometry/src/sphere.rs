@@ -1,21 +1,21 @@
-//! Spheres: one quadratic each, exact under perspective.
+//! Set-up of spheres: the image of each sphere is one quadratic expression, exact under perspective.
 //!
-//! A pixel's ray is `t d`, where d is linear in the pixel's coordinates and has z = -1, so that t is the distance along
-//! -Z. Let c and r be centre and radius of the sphere, u = 1/t and D = c.c - r^2. Then the ray meets the sphere where
+//! A pixel's ray is `t d`. Here d is linear in the pixel's coordinates and has z = -1, so t is the distance along -Z.
+//! Let c be the centre and r the radius of the sphere, u = 1/t and D = c.c - r^2. Then the ray meets the sphere where
 //!
 //! ```text
 //! D u^2 - 2 (d.c) u + d.d = 0,   u = (d.c + sqrt(Q)) / D,   Q = (d.c)^2 - D (d.d) = r^2 d.d - |d x c|^2
 //! ```
 //!
 //! Q is a quadratic in the pixel's coordinates. It is at least 0 exactly inside the sphere's image, an ellipse. Depth
-//! is linear in u, so it is a plane minus a multiple of the root of Q. Under a parallel projection `Q = r^2 - |p -
-//! c|^2`, and depth is a constant minus a multiple of the root of Q.
+//! is linear in u, so it is a plane minus a multiple of the root of Q. Under a parallel projection, `Q = r^2 - |p -
+//! c|^2`. Then depth is a constant minus a multiple of the root of Q.
 //!
-//! **Not drawn, but counted:** spheres that the near plane cuts, since one quadratic cannot show the hole (the eye
-//! inside a sphere is such a case), and spheres whose image reaches beyond the far plane. Spheres of radius 0 have no
-//! image and count as outside.
+//! **Not drawn, but counted:** spheres that the near plane cuts, also those with the eye inside, since one quadratic
+//! cannot show the hole. The same holds for spheres whose image reaches beyond the far plane. Spheres of radius 0 have
+//! no image, and count as outside.
 //!
-//! Newton steps compute all quotients and roots, as on an i860. [`crate::sphere_kernel`] has the same computation as
+//! Newton steps compute all quotients and roots, as on an i860. [`crate::sphere_kernel`] is the same computation as
 //! i860 code.
 
 use crate::bin::Range;
@@ -26,27 +26,28 @@ use crate::transform::Transform;
 use crate::view::{FromWorld, dot};
 use crate::{RegionMask, SetupStats, WorldSphere};
 
-/// Largest absolute eye coordinate and radius of a sphere. The squares of larger numbers could overflow.
+/// Largest allowed absolute value of a sphere's eye coordinates and radius. The squares of larger numbers could
+/// overflow.
 pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
 /// A sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that meet the bounding box of the sphere's image: all touched regions, and possibly regions at its
-    /// corners.
+    /// Regions that meet the bounding box of the sphere's image. They include all regions that the image touches. Near
+    /// the corners of the box, they can include others.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
-    /// The image as a conic `Q = bulge^2`. The bulge is the distance of the surface in front of the plane of depth, in
-    /// units of the depth expression.
+    /// The sphere's image as a conic `Q = bulge^2`. The bulge is the distance from the plane `depth` forward to the
+    /// sphere's surface, in units of the depth expression.
     pub(crate) conic: Conic,
-    /// Position, value and size of the conic's maximum.
+    /// Position, value and size of the conic around its maximum.
     pub(crate) ellipse: Ellipse,
-    /// Plane of depth: value at the conic's centre, and slopes per pixel along x and y.
+    /// Plane of depth at the silhouette: its value at the conic's centre, and its slopes per pixel along x and y.
     pub(crate) depth: [f64; 3],
     /// Depth of the sphere's nearest point, in units of the depth expression.
     pub(crate) front: f64,
-    /// Unit vectors at the sphere's centre: across, up and towards the eye.
+    /// Unit vectors at the sphere's centre: to the right, up, and towards the eye.
     pub(crate) axes: [[f64; 3]; 3],
 }
 
@@ -69,7 +70,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c * inverse)
 }
 
-/// Returns the component of `v` perpendicular to the unit vector `axis`, with length 1.
+/// Returns the component of `v` perpendicular to the unit vector `axis`, scaled to length 1.
 fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     let along = dot(v, axis);
     unit(std::array::from_fn(|i| v[i] - along * axis[i]))
@@ -83,7 +84,8 @@ struct EyeSphere {
 }
 
 impl EyeSphere {
-    /// Creates a sphere in eye coordinates. Returns `None` for NaN, huge numbers and a negative radius.
+    /// Creates a sphere in eye coordinates. Returns `None` if a number is NaN or too large, or if the radius is
+    /// negative.
     fn new(to_eye: &FromWorld, sphere: &WorldSphere) -> Option<Self> {
         let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
         let radius = f64::from(sphere.radius) * to_eye.scale();
@@ -91,8 +93,8 @@ impl EyeSphere {
         (radius >= 0.0 && fits).then_some(Self { centre: [x, y, z], radius })
     }
 
-    /// Returns the greatest distance t on the silhouette under perspective: the farthest point of the circle of
-    /// tangents.
+    /// Returns the greatest distance along -Z of a point on the silhouette, under perspective. There, the eye's rays
+    /// touch the sphere.
     fn farthest_tangent(&self) -> f64 {
         let inverse = reciprocal_double(dot(self.centre, self.centre));
         let shrink = 1.0 - (self.radius * self.radius) * inverse;
@@ -120,19 +122,19 @@ impl Lens {
         if self.is_beyond_far(front) {
             return Sight::Outside;
         }
-        // No tangent point is behind the sphere's back.
+        // No point of the silhouette is behind the back of the sphere.
         if self.is_beyond_far(back) && self.is_beyond_far(self.deepest(sphere)) {
             return Sight::AcrossFar;
         }
         Sight::Visible
     }
 
-    /// Returns the distance along -Z of the silhouette's deepest point.
+    /// Returns the greatest distance along -Z of a point on the silhouette.
     fn deepest(&self, sphere: &EyeSphere) -> f64 {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth around its centre.
+    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth at the silhouette.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
@@ -177,10 +179,10 @@ impl Lens {
 }
 
 impl Transform {
-    /// Transforms a sphere. Returns `None`, and counts the reason, if the sphere is not drawn.
+    /// Transforms a sphere. If the sphere is not drawn, returns `None` and counts the reason.
     ///
-    /// The model-view matrix must be a rotation, translation and uniform scale. The projection must be along -Z; other
-    /// projections count as [`SetupStats::spheres_unprojectable`].
+    /// The model-view matrix must consist of a rotation, a translation and a uniform scale. The projection must be
+    /// along -Z. For other projections, the sphere counts in [`SetupStats::spheres_unprojectable`].
     pub fn sphere(&self, sphere: &WorldSphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
         stats.spheres += 1;
         // Count the reason for every sphere that is not drawn.
@@ -204,7 +206,7 @@ impl Transform {
     fn visible(&self, lens: &Lens, eye: &EyeSphere, colour: [u8; 3], stats: &mut SetupStats) -> Option<ScreenSphere> {
         let (conic, depth) = lens.picture(eye);
         let ellipse = conic.ellipse();
-        // Bin by the bounding box of the ellipse.
+        // Bin the sphere by the bounding box of its ellipse.
         let regions = ellipse.bounds().map_or(RegionMask::EMPTY, |bounds| {
             let [x, y] = bounds.map(pixels);
             self.binner.rectangle(x, y)
@@ -226,15 +228,15 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box in pixels, greater than the effect of rounding the quadratic on the silhouette.
+/// Margin around a bounding box, in pixels. It is greater than the shift of the silhouette from rounding the quadratic.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
-/// Returns the pixels whose centres are in an interval of pixel coordinates (0 is the centre of pixel 0).
+/// Returns the pixels whose centres are in an interval. Coordinate 0 is the centre of pixel 0.
 fn pixels([low, high]: [f64; 2]) -> Range {
     Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
 }
 
-/// Limits a pixel coordinate to a range that fits 32 bits in every later step.
+/// Limits a pixel coordinate to a range in which all later steps fit 32 bits.
 fn near_screen(pixel: f64) -> f64 {
     pixel.clamp(-4096.0, 4096.0)
 }

@@ -1,14 +1,14 @@
-//! Set-up of spheres as code of the graphics processor: i860 assembly and its memory layout, like [`crate::kernel`] for
-//! triangles.
+//! Set-up of spheres as code of the graphics processor: i860 assembly, and its memory layout. [`crate::kernel`] is the
+//! corresponding code for triangles.
 //!
-//! A [`SphereKernel`] computes the words of renderer commands and the bins from the spheres of the display list. The
-//! steps are: centre and radius in eye coordinates, near and far plane, conic, bounding box, regions, the conic in
-//! fixed point, and the planes of depth and surface. All schedules of the triangle kernels use the same sphere code,
-//! which follows the rules of the compiled one. The computation equals the native code, so that the words are the same
-//! bit for bit.
+//! A [`SphereKernel`] reads the spheres of the display list. It computes the words of their renderer commands and puts
+//! the commands into bins. The first steps are centre and radius in eye coordinates, near and far plane, and conic.
+//! Then follow bounding box, regions, the conic in fixed point, and the planes of depth and surface. There is only one
+//! version of the sphere code, in the style of the compiled triangle kernels. It is used with every optimization level
+//! of the triangle kernels. The native code makes the same computation, so both give the same words, bit for bit.
 //!
-//! kernels/sphere_parameters.s defines the parameter block. On the processor, `place` writes its view-dependent part
-//! ([`crate::kernel::place_source`]).
+//! kernels/sphere_parameters.s defines the parameter block. On the processor, the code at the label `place` writes the
+//! parameters that depend on the view ([`crate::kernel::place_source`]).
 
 use crate::kernel::{self, KernelPicture, KernelSurface};
 use crate::lens::{self, DEPTH_RANGE};
@@ -17,40 +17,40 @@ use crate::sphere::{MAX_COORDINATE, SLACK};
 use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
 use pxpl5_wire::{Word, format};
 
-/// The choice of code for spheres of one kind of surface and picture.
+/// The choice of sphere code for one kind of surface and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SphereKernel {
     /// Kind of surface: interpolated colour, or normals.
     pub surface: KernelSurface,
     /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// True if the kernel keeps the bounding box of each command and has no bins.
+    /// True if the kernel has no bins and stores the bounding box of each command.
     pub keeps_boxes: bool,
 }
 
-/// Number of words of a sphere in the display list.
+/// Number of words that a sphere takes in the display list.
 pub const SPHERE_WORDS: usize = 8;
 
 /// Number of words of the parameter block.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
-/// Position of the command's words in the parameter block.
+/// Position, in words of the parameter block, of the blank command into which the kernel writes operands.
 const TEMPLATE: usize = 110;
 
-/// Position of the picture's size in the parameter block, after the longest command.
+/// Position of the picture's size in the parameter block, in words. It follows the space for the longest blank command.
 const SIZE: usize = TEMPLATE + 53;
 
 /// Number of words at the start of the parameter block that depend on a view and a light.
 pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
-    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no such picture.
+    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no such kind.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
     }
 
-    /// Returns the source in i860 assembly, whose entry is the label `spheres`.
+    /// Returns the source in i860 assembly. Execution begins at the label `spheres`.
     #[must_use]
     pub fn source(&self) -> String {
         let surface = match self.surface {
@@ -77,7 +77,7 @@ impl SphereKernel {
         .join("\n")
     }
 
-    /// Returns the number of words of a command.
+    /// Returns the number of words of a sphere's command.
     #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
@@ -86,9 +86,10 @@ impl SphereKernel {
         }
     }
 
-    /// Returns the parameter block for a view. Returns `None` if the projection cannot show spheres.
+    /// Returns the parameter block of a view. Returns `None` if the projection cannot show spheres.
     ///
-    /// `command` is a command of zeros, into which the kernel writes operands.
+    /// `command` is a blank command with zeros as operands. The kernel copies it and writes the operands of each
+    /// sphere.
     #[must_use]
     pub fn parameters(
         &self,
@@ -100,14 +101,14 @@ impl SphereKernel {
         let mut words = [0; SPHERE_PARAMETER_WORDS];
         let [x, y, z, _] = transform.to_eye.rows();
         let origin = transform.to_eye.origin().to_array();
-        // Words 0 to 14: matrix and eye, in single precision.
+        // Words 0 to 14: the matrix and the eye's position, in single precision.
         let singles = [x, y, z].concat().into_iter().chain(origin).map(f32::to_bits);
         words.iter_mut().zip(singles).for_each(|(word, single)| *word = single);
         let [light_x, light_y, light_z] = light.direction.map(f64::from);
         let pairs = [lens.step, lens.rate, lens.corner, lens.near, lens.far].concat();
         let of_light = [light_x, light_y, light_z, light.ambient.into(), light.diffuse.into()];
         let depths = [lens.least, lens.base, lens.reach];
-        // Words 16 to 53: projection and light, in double precision.
+        // Words 16 to 53: the projection and the light, in double precision.
         doubles(&mut words[16..], &[&[transform.to_eye.scale()], pairs.as_slice(), &depths, &of_light].concat());
         words[54] = Word::from(lens.parallel);
         words[55] = transform.viewport.first_line();
@@ -118,7 +119,7 @@ impl SphereKernel {
         Some(words)
     }
 
-    /// Returns the constants that depend on the picture, and other numbers of the code.
+    /// Returns the constants that depend on the picture, and other constants that the code uses.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);
@@ -161,7 +162,7 @@ impl SphereKernel {
     }
 }
 
-/// Stores doubles as words, the low half first.
+/// Stores doubles as two words each, the low half first.
 fn doubles(words: &mut [Word], values: &[f64]) {
     for (pair, value) in words.chunks_exact_mut(2).zip(values) {
         pair.copy_from_slice(&kernel::halves(*value));

@@ -1,4 +1,4 @@
-//! Set-up of spheres: computes the renderer's operands from a conic and a plane.
+//! Set-up of spheres: computes the operands of the renderer's commands from a conic and a plane.
 
 use crate::conic::{self, FixedConic};
 use crate::newton::{reciprocal_root, root, whole};
@@ -7,7 +7,7 @@ use crate::sphere::ScreenSphere;
 use crate::{Light, SetupStats, Viewport};
 use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 
-/// Silhouette and depth of a sphere, common to both kinds of shading.
+/// Silhouette and depth of a sphere, with which the renderer computes for each pixel:
 ///
 /// ```text
 /// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))
@@ -15,16 +15,18 @@ use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SphereSetup {
-    /// Silhouette expression: a pixel is inside where it is at least 0. It fits 48 bits within the sphere's regions.
+    /// Silhouette expression: a pixel is inside where it is at least 0. Its value fits 48 bits within the sphere's
+    /// regions.
     ///
-    /// Its scale is not [`format::QUADRATIC_FRACTION_BITS`], but is chosen so that the root needs no factor.
+    /// Its unit is not that of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so that the root needs no
+    /// factor.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Depth of the plane of the silhouette with [`format::Z_FRACTION_BITS`], including a correction for the rounding
-    /// of the root.
+    /// Depth of the plane through the silhouette, with [`format::Z_FRACTION_BITS`] fraction bits. It includes a
+    /// correction for the rounding of the root.
     pub depth: Linear,
-    /// Left shift of the root before its subtraction from the depth, 0 to 20.
+    /// Left shift of the root, in bits, before its subtraction from the depth: 0 to 20.
     pub depth_shift: u8,
 }
 
@@ -33,27 +35,28 @@ pub struct SphereSetup {
 pub struct GouraudSphere {
     /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
-    /// Linear part of red, green and blue with [`format::COLOUR_FRACTION_BITS`].
+    /// Linear part of red, green and blue, with [`format::COLOUR_FRACTION_BITS`] fraction bits.
     pub rgb: [Linear; 3],
     /// Factors of the root, 0 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     pub root_factor: [u16; 3],
 }
 
-/// A sphere for deferred shading. The z of its normal is `root >> 2`; x and y have the same scale.
+/// A sphere whose pixels are shaded at the end of the frame. The z of its normal is `root >> 2`; x and y have the same
+/// scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
     /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
-    /// x and y of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`].
+    /// x and y of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits.
     pub normal: [Linear; 2],
     /// Red, green and blue of the whole sphere, 0 to 255 each.
     pub colour: [u8; 3],
 }
 
-/// Steepest slope of a plane, in units of its expression per pixel: the limit of 32 bits.
+/// Steepest slope of a plane, in units of its expression per pixel. Steeper slopes do not fit 32 bits.
 pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
 
-/// A plane, given by its value at a point of the frame and its slopes.
+/// A plane, given by its value at one point of the frame and by its slopes along x and y.
 struct Slope {
     origin: [f64; 2],
     value: f64,
@@ -61,10 +64,10 @@ struct Slope {
 }
 
 impl Slope {
-    /// Converts the plane to fixed point, modulo 2^32 like every linear expression. The result is most exact at
-    /// `pixel`.
+    /// Converts the plane to fixed point, modulo 2^32, like every linear expression. The result is most exact at the
+    /// pixel `pixel`.
     ///
-    /// A plane with a slope beyond 2^31 becomes flat, and counts as flattened.
+    /// If a slope exceeds 2^31, the plane becomes flat and counts as flattened.
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -78,12 +81,12 @@ impl Slope {
     }
 }
 
-/// Returns the low 32 bits of the nearest integer.
+/// Returns the low 32 bits of the integer nearest to `value`.
 fn modulo_2_32(value: f64) -> i32 {
     whole(value) as i32
 }
 
-/// Limits a factor of the root to the range of the command, 0 to 511; NaN becomes 0.
+/// Limits a factor of the root to the command's range, 0 to 511. NaN becomes 0.
 #[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN")]
 fn limited(factor: f64) -> i64 {
     whole(factor.max(0.0).min(511.0))
@@ -99,8 +102,8 @@ fn frame_line(viewport: &Viewport, row: u32) -> i32 {
 }
 
 impl ScreenSphere {
-    /// Returns the frame's pixels that the renderers of the touched regions evaluate, which may extend beyond the
-    /// picture.
+    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. They can extend
+    /// beyond the picture.
     fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
         let grid = viewport.grid();
         let corners = self.regions.iter().map(|r| grid.rectangle(r));
@@ -114,7 +117,7 @@ impl ScreenSphere {
         ]
     }
 
-    /// Returns the pixel at which planes are rounded: the middle of the visible part.
+    /// Returns the pixel at which planes are most exact: the middle of the sphere's visible part.
     fn middle(&self, rectangle: [[i32; 2]; 2]) -> [i32; 2] {
         std::array::from_fn(|i| {
             let [first, last] = rectangle[i].map(f64::from);
@@ -127,8 +130,8 @@ impl ScreenSphere {
         let middle = self.middle(rectangle);
         let conic = self.conic.fixed(self.ellipse.value, rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
-        // Roots are rounded down, so surfaces are up to one step too deep. Moving the plane half a step nearer, as far
-        // as depth 0 permits, makes this a rounding to the nearest.
+        // Roots are rounded down, so surfaces are up to one step too deep. Moving the plane nearer by half a step makes
+        // this a rounding to the nearest step. The plane must not move in front of depth 0.
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
         let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
         let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
@@ -143,8 +146,8 @@ impl ScreenSphere {
         (setup, conic)
     }
 
-    /// Returns the plane `scale * n + value`, where n is the x (scale 0) and y (scale 1) of a unit normal in the
-    /// sphere's axes.
+    /// Returns the plane `scale[0] * x + scale[1] * y + value`. Here x and y are components of the sphere's unit
+    /// normal, along the sphere's axes.
     fn tilt(&self, scale: [f64; 2], value: f64) -> Slope {
         let [per_x, per_y] = self.ellipse.per_half_size();
         Slope { origin: self.ellipse.peak, value, slope: [scale[0] * per_x, -scale[1] * per_y] }
@@ -152,8 +155,9 @@ impl ScreenSphere {
 
     /// Computes the operands for interpolated colour.
     ///
-    /// The part of the normal towards the eye is the root; the rest is approximated as linear on the screen. A pixel
-    /// that turns away from the light gets darker than ambient light. Light from behind the sphere adds nothing.
+    /// The root gives the component of the normal towards the eye. The other components are approximated by linear
+    /// expressions on the screen. A pixel that turns away from the light gets darker than ambient light. Light from
+    /// behind the sphere adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
@@ -169,7 +173,7 @@ impl ScreenSphere {
             let plane = self.tilt(scale, full * ambient + unit * 0.5);
             rows(plane.fixed(middle, stats), viewport)
         });
-        // Reciprocal of the greatest value of the root's upper bits, which lack four bits.
+        // Reciprocal of the greatest value of the root's upper bits. They are the root without its lowest four bits.
         let per_root = reciprocal_root(self.ellipse.value) * conic::power_of_two(i32::from(conic.depth_shift) + 4);
         let root_factor = self.colour.map(|c| {
             let factor = f64::from(c) * diffuse * towards * 256.0 * per_root;
@@ -178,13 +182,13 @@ impl ScreenSphere {
         GouraudSphere { setup, rgb, root_factor }
     }
 
-    /// Computes the operands for deferred shading.
+    /// Computes the operands for shading at the end of the frame.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
-        // The root at the middle. A quarter of it is z.
+        // The root at the middle of the sphere. The z of the normal there is a quarter of this root.
         let greatest = root(self.ellipse.value) * conic::power_of_two(-i32::from(conic.depth_shift));
         let scale = greatest * 0.25 * unit;
         let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {

@@ -1,49 +1,50 @@
-//! Counters of the set-up.
+//! Counters of the set-up of triangles and spheres.
 
 use serde::{Deserialize, Serialize};
 
-/// Counts of primitives, and of everything that the set-up dropped, cut or limited.
+/// Counts of primitives, and of all cases in which the set-up dropped, cut or limited something.
 ///
-/// All counts start at zero. Callers add the counts of several graphics processors.
+/// All counts start at zero. Callers add up the counts of several graphics processors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupStats {
-    /// Triangles passed to the set-up, visible or not.
+    /// Number of triangles passed to the set-up, visible or not.
     pub triangles: u64,
-    /// Screen triangles produced. Clipping can give several or none per triangle.
+    /// Number of screen triangles produced. Clipping can turn a triangle into several screen triangles or into none.
     pub screen_triangles: u64,
-    /// Triangles or pieces dropped because a clip coordinate is NaN, infinite or beyond [`crate::MAX_CLIP`], or w is
-    /// nearly 0.
+    /// Number of triangles, or pieces of clipped triangles, dropped for unusable coordinates. In these, a clip
+    /// coordinate is NaN, infinite or beyond [`crate::MAX_CLIP`], or w is nearly 0.
     pub not_finite: u64,
-    /// Triangles dropped because all vertices are beyond one side of the view.
+    /// Number of triangles dropped because all corners are outside one of the six planes of the view volume.
     pub outside: u64,
-    /// Triangles cut by the near plane, the far plane or the guard band.
+    /// Number of triangles cut by the near plane, the far plane or the guard band.
     pub clipped: u64,
-    /// Screen triangles dropped as back faces (only with [`crate::Culling::Back`]).
+    /// Number of screen triangles dropped as back faces (only with [`crate::Culling::Back`]).
     pub back_facing: u64,
-    /// Screen triangles dropped because their area is zero after snapping.
+    /// Number of screen triangles dropped because their area is zero after rounding to subpixels.
     pub degenerate: u64,
-    /// Screen triangles dropped because they touch no region: off the screen, or between pixel centres.
+    /// Number of screen triangles dropped because they touch no region. They are off the screen or between pixel
+    /// centres.
     pub untouched: u64,
-    /// Planes of depth, colour or normal that were steeper than [`crate::MAX_SLOPE`] and became flat.
+    /// Number of planes of depth, colour or normal that were steeper than [`crate::MAX_SLOPE`] and became flat.
     pub flattened_planes: u64,
-    /// Spheres passed to the set-up, visible or not.
+    /// Number of spheres passed to the set-up, visible or not.
     pub spheres: u64,
-    /// Spheres produced, which are on the screen.
+    /// Number of spheres that passed all tests and are drawn.
     pub screen_spheres: u64,
-    /// Spheres dropped because the near plane cuts them or the eye is inside.
+    /// Number of spheres dropped because the near plane cuts them or the eye is inside them.
     pub spheres_across_near: u64,
-    /// Spheres dropped because the far plane cuts them.
+    /// Number of spheres dropped because the far plane cuts them.
     pub spheres_across_far: u64,
-    /// Spheres dropped because they are behind the eye, beyond the far plane or off the screen.
+    /// Number of spheres dropped because they are behind the eye, beyond the far plane or off the screen.
     pub spheres_outside: u64,
-    /// Spheres dropped because a number is NaN, infinite or huge, or the radius is negative.
+    /// Number of spheres dropped because a number is NaN, infinite or too large, or the radius is negative.
     pub spheres_not_finite: u64,
-    /// Spheres dropped because the projection is neither perspective nor parallel along -Z.
+    /// Number of spheres dropped because the projection is neither perspective nor parallel along -Z.
     pub spheres_unprojectable: u64,
 }
 
 impl SetupStats {
-    /// Adds the counts of `other` to this one.
+    /// Adds the counts of `other` to these counts.
     pub fn add(&mut self, other: &Self) {
         self.triangles += other.triangles;
         self.screen_triangles += other.screen_triangles;

@@ -1,4 +1,4 @@
-//! Results of binning.
+//! Results of binning: the regions that a triangle touches, or the reason why it is not drawn.
 
 use crate::regions::RegionMask;
 use crate::stats::SetupStats;
@@ -7,17 +7,17 @@ use pxpl5_wire::RegionId;
 /// The result of binning one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// The triangle needs clipping; [`crate::Transform::bin`] clips it and finds its regions.
+    /// The triangle needs clipping. [`crate::Transform::bin`] clips it and finds its regions.
     NeedsClipping,
-    /// The triangle has no area after snapping.
+    /// The triangle has no area after rounding to subpixels.
     Degenerate,
-    /// The triangle is a back face, and back faces are culled.
+    /// The triangle is a back face, and the view drops back faces.
     BackFacing,
-    /// The triangle touches no region: off the screen, or between pixel centres.
+    /// The triangle touches no region. It is off the screen or between pixel centres.
     Untouched,
-    /// The triangle touches exactly this region.
+    /// The triangle touches only this region.
     Region(RegionId),
-    /// The triangle touches these regions, more than one.
+    /// The triangle touches all of these regions. There are at least two.
     Regions(RegionMask),
 }
 
@@ -31,7 +31,8 @@ impl Touch {
         }
     }
 
-    /// Returns the touched regions, if there are any, and counts the screen triangle or the reason for its absence.
+    /// Returns the touched regions, or `None` if the triangle is not drawn. Counts the screen triangle, or the reason
+    /// for which it is not drawn.
     #[inline(always)]
     pub const fn count(self, stats: &mut SetupStats) -> Option<RegionMask> {
         match self {

@@ -1,4 +1,5 @@
-//! The regions that the triangles of a mesh touch, computed once for all processors that hold some of them.
+//! The regions that the triangles of a mesh touch. They are computed once for all processors that hold a part of the
+//! mesh.
 
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
@@ -9,10 +10,10 @@ use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
 
-/// Binning results for the triangles of a mesh, four bytes each.
+/// Binning results of the triangles of a mesh, four bytes for each triangle.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// For each triangle a region, one of the codes below, or [`SEVERAL`] plus an index of `several`.
+    /// For each triangle: its region, or one of the codes below, or [`SEVERAL`] plus an index into `several`.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }
@@ -41,7 +42,7 @@ impl Touched {
         }
     }
 
-    /// Returns the region of triangle `i` if the triangle touches only one region.
+    /// Returns the region of triangle `i` if the triangle touches exactly one region.
     ///
     /// # Panics
     /// If there is no triangle `i`.
@@ -68,13 +69,13 @@ impl Touched {
 }
 
 impl Transform {
-    /// Bins triangles, with the results of [`Self::bin`].
+    /// Bins triangles. The results equal those of [`Self::bin`].
     ///
-    /// Triangles are given by the numbers of their corners. `vertices` begins with number `first`, and must come from
-    /// this view.
+    /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
+    /// vertices must come from this view.
     ///
     /// # Panics
-    /// If a corner's number is not in `vertices`.
+    /// If a corner's index is not in `vertices`.
     #[must_use]
     pub fn touched(&self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.len()), several: Vec::new() };
@@ -103,7 +104,7 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// Bins a triangle whose box lies in more than one region.
+    /// Returns the binning result of a triangle whose bounding box meets more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -114,12 +115,12 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of some triangles, indexed by corner first.
+/// x and y of the corners of several triangles. The first index is the corner, the second the triangle.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
 impl CornerLanes {
-    /// Collects the corners of triangles from `vertices`, which begins with number `first`.
+    /// Collects the corners of triangles from `vertices`, which begins with the vertex of index `first`.
     #[inline(always)]
     fn of(vertices: &[ScreenVertex], first: u32, triangles: &EachLane<[u32; 3]>) -> Self {
         let mut all = [[[0; 2]; LANES]; 3];
@@ -152,12 +153,13 @@ impl CornerLanes {
     }
 }
 
-/// Binning results of several triangles at once.
+/// Results of binning several triangles by their bounding boxes.
 struct LaneTouches {
-    /// Codes as in [`Touched`], but plain [`SEVERAL`] if the edges must decide between several regions.
+    /// Codes as in [`Touched`]. The code is [`SEVERAL`] without an index if the edges must decide between several
+    /// regions.
     codes: EachLane<u32>,
     any_several: bool,
-    /// First and last column of pixels.
+    /// First and last column of pixels in each triangle's bounding box.
     x: [EachLane<i32>; 2],
     y: [EachLane<i32>; 2],
 }
@@ -178,13 +180,13 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
         (row, binner.row_box(row))
     });
     let areas = areas(&corners);
-    // Sign that makes the area of a culled triangle positive.
+    // Sign that makes the area of a triangle to drop positive.
     let dropped = match dropped {
         None => 0.0,
         Some(Turn::Clockwise) => 1.0,
         Some(Turn::Counterclockwise) => -1.0,
     };
-    // Later lines override earlier ones, so the order of these tests matters.
+    // Later lines override earlier ones, so the order of the tests matters.
     let mut codes = [0; LANES];
     let mut n_several = 0;
     for i in 0..LANES {
@@ -200,7 +202,8 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
     LaneTouches { codes, any_several: n_several > 0, x: columns, y: rows }
 }
 
-/// Returns twice the areas. Products of two differences of corners need 35 bits, so doubles are exact.
+/// Returns twice the area of each triangle, in 1/256 square px. Products of two differences of corners need 35 bits, so
+/// doubles are exact.
 #[inline(always)]
 fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -223,7 +226,8 @@ fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     [low, high]
 }
 
-/// Returns the first and last pixel between the smallest and largest corner, limited to the picture.
+/// Returns the first and last pixel whose centres lie between the smallest and largest corner. `within` limits them to
+/// the picture.
 #[inline(always)]
 fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> [EachLane<i32>; 2] {
     let mut first = [0; LANES];
@@ -236,9 +240,11 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
     [first, last]
 }
 
-/// Returns the column or row of regions whose pixel-centre box holds all corners, or -1 if there is none.
+/// Returns, for each triangle, the column or row of regions whose pixel-centre box holds all corners. Returns -1 if
+/// there is none.
 ///
-/// `of` returns the column or row of a pixel, and the first and last pixel or line of that column or row.
+/// For a given pixel, `of` returns its column or row of regions, and the first and last pixel or line of this column or
+/// row.
 #[inline(always)]
 fn cells(
     [low, high]: &[EachLane<i32>; 2],

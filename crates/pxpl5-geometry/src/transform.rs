@@ -1,4 +1,4 @@
-//! Transform: from triangles in the world to triangles on the screen.
+//! Transform of triangles from world coordinates to the screen.
 
 use crate::bin::Binner;
 use crate::clip::{self, ClipVertex, Corner, Guard};
@@ -13,31 +13,31 @@ use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Culling mode: the triangles that are dropped for their winding.
+/// Culling mode: selects the triangles to drop by their winding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
     /// All triangles are drawn.
     #[default]
     None,
-    /// Triangles are dropped if their corners run clockwise in model coordinates, seen from the eye. Mirroring matrices
-    /// do not change which triangles are dropped.
+    /// Back faces are dropped: triangles whose corners run clockwise in model coordinates, seen from the eye. A
+    /// mirroring matrix does not change the choice of triangles.
     Back,
 }
 
-/// A view of the world on one picture, ready to transform primitives.
+/// A view of the world for one picture, ready to transform primitives.
 #[derive(Clone, Debug)]
 pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// Projection of spheres; `None` if the projection does not support spheres.
+    /// Projection of spheres; `None` if the view's projection is unsuitable for spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
     pub(crate) guard: Guard,
     pub(crate) binner: Binner,
-    /// Winding on the screen of the triangles to drop; `None` if all are drawn.
+    /// Winding on the screen of the triangles to drop; `None` if no triangle is dropped for its winding.
     pub(crate) dropped: Option<Turn>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) enum Turn {
     Counterclockwise,
 }
 
-/// Mapping from normalized device coordinates to subpixels of the frame: `scale * v + centre`.
+/// Mapping of a normalized device coordinate `v` to subpixels of the frame: `scale * v + centre`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ToScreen {
     pub(crate) scale: [f32; 2],
@@ -71,7 +71,8 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Returns the corners interpolated between the views (0 to 1), in whole subpixels.
+    /// Returns the corners interpolated between the two views, in whole subpixels. `s` is 0 in the first view and 1 in
+    /// the second.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -80,7 +81,7 @@ impl TriangleEnds {
         })
     }
 
-    /// Returns the least and greatest distance of a corner from the frame's top border in either view, in 1/16 px.
+    /// Returns the smallest and largest distance of a corner from the frame's top border, over both views, in 1/16 px.
     #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
         let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
@@ -88,12 +89,12 @@ impl TriangleEnds {
     }
 }
 
-/// Returns the integer nearest to the interpolated value: `s` is 0 at `from` and 1 at `to`.
+/// Returns the integer nearest to the linear interpolation from `from` (`s` = 0) to `to` (`s` = 1).
 fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
 
-/// Returns half of a number of pixels, in subpixels.
+/// Returns half of `pixels`, converted to subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
     (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
@@ -105,14 +106,14 @@ impl ToScreen {
         Self { scale: [x, -y], centre: [x, y] }
     }
 
-    /// Returns the guard band. It is one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot exceed this
-    /// limit.
+    /// Returns the guard band. Its limits are one pixel inside [`screen::GUARD_PIXELS`], so that rounded positions stay
+    /// within [`screen::GUARD_PIXELS`].
     fn guard(&self) -> Guard {
         let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
-    /// Divides by w and snaps to subpixels. The vertex must be inside the guard band.
+    /// Divides clip coordinates by w and rounds them to subpixels. The vertex must be inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = newton::reciprocal(w);
@@ -123,9 +124,11 @@ impl ToScreen {
         }
     }
 
-    /// Divides by w and snaps a corner of a clipped triangle. Returns `None` if the corner is still outside (w near 0).
+    /// Divides a corner of a clipped triangle by w and rounds it to subpixels. Returns `None` if the corner is still
+    /// outside the guard band, because w is near 0.
     ///
-    /// A vertex is snapped like all vertices, a cut in double precision.
+    /// An original vertex is computed like the vertices of unclipped triangles. A corner made by clipping is computed
+    /// in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         if clip[3] < f64::from(clip::MIN_W) {
@@ -145,15 +148,16 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle, with the order of its corners.
+/// Outline of a screen triangle, and the relation of its corner order to the input order.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
-    /// True if corners 1 and 2 were exchanged to run clockwise.
+    /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.
     swapped: bool,
 }
 
 impl Assembled {
-    /// Arranges corners in clockwise order, without regions yet. Returns `None` if the triangle has no area.
+    /// Arranges corners in clockwise order. The regions of the result are not set yet. Returns `None` if the triangle
+    /// has no area.
     #[inline(always)]
     pub(crate) fn clockwise([p, q, r]: [Snapped; 3]) -> Option<Self> {
         let mut outline =
@@ -168,7 +172,7 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges values of the corners from input order to the outline's order.
+    /// Rearranges one value for each corner from the input order to the outline's order.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
@@ -177,8 +181,9 @@ impl Assembled {
 
 /// Returns true if a view reverses the winding of corners.
 ///
-/// The sign of a determinant decides. It is the determinant of the map from model coordinates to x, y and w of the
-/// screen, or to x, y and depth if w is constant. A view along -Z has a negative determinant.
+/// The sign of a determinant shows the reversal. The determinant belongs to the map from model coordinates to x, y and
+/// w of the screen. If w is constant, depth replaces w. For a view along -Z without mirroring, the determinant is
+/// negative.
 fn is_mirrored(view: &ViewTransform) -> bool {
     let matrix = view.projection * view.model_view;
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());
@@ -188,14 +193,14 @@ fn is_mirrored(view: &ViewTransform) -> bool {
 }
 
 impl Transform {
-    /// Prepares a view of the world on a picture.
+    /// Prepares a view of the world for one picture.
     ///
     /// # Errors
     /// [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);
-        // Reject NaN and infinities here, so that later steps need not test them.
+        // Reject NaN and infinities here, so that later steps need no test for them.
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
                 return Err(ViewError::NotFinite { matrix });
@@ -227,7 +232,8 @@ impl Transform {
         &self.viewport
     }
 
-    /// Bins one triangle: calls `sink` with the regions of each screen triangle that touches any.
+    /// Bins one triangle: calls `sink` once for each resulting screen triangle that touches a region, with all regions
+    /// that it touches.
     ///
     /// [`Self::gouraud`] and [`Self::phong`] give the same screen triangles in the same order.
     #[inline]
@@ -245,14 +251,14 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines, for callers that bin into regions of
-    /// their own.
+    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. Callers with regions of their own
+    /// can bin the outlines.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));
     }
 
-    /// Transforms and lights one triangle: calls `sink` for each screen triangle that touches a region.
+    /// Transforms and lights one triangle. Calls `sink` for each resulting screen triangle that touches a region.
     #[inline]
     pub fn gouraud(
         &self,
@@ -272,7 +278,7 @@ impl Transform {
         );
     }
 
-    /// Transforms one triangle with its normals: calls `sink` for each screen triangle that touches a region.
+    /// Transforms one triangle with its normals. Calls `sink` for each resulting screen triangle that touches a region.
     #[inline]
     pub fn phong(
         &self,
@@ -292,7 +298,8 @@ impl Transform {
         );
     }
 
-    /// Transforms a triangle. `extra` returns three more values of a corner, and is called only for visible triangles.
+    /// Transforms one triangle. `extra` returns three surface values of a corner; it is called only for visible
+    /// triangles.
     #[inline(always)]
     fn triangle(
         &self,
@@ -315,7 +322,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
-    /// Returns the corners of a triangle on the screen, in this view and in another view of the same picture.
+    /// Returns the corners of a triangle on the screen in two views: this view and the view `end`. Both must have the
+    /// same picture.
     ///
     /// Returns `None` if a corner is outside the guard band of either view.
     #[must_use]
@@ -329,7 +337,8 @@ impl Transform {
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
-    /// Sets up a triangle between two views, lit as in this view. Its screen position is interpolated: `s` is 0 to 1.
+    /// Sets up a triangle at a position between two views, with the light of this view. `s` is 0 in the first view and
+    /// 1 in the second.
     pub fn gouraud_between(
         &self,
         ends: &TriangleEnds,
@@ -347,8 +356,8 @@ impl Transform {
         }
     }
 
-    /// Calls `sink` with the outline of a triangle between two views, like [`Self::gouraud_between`] without its
-    /// colours.
+    /// Calls `sink` with the outline of a triangle at a position between two views, like [`Self::gouraud_between`], but
+    /// without colours.
     pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -356,8 +365,8 @@ impl Transform {
         }
     }
 
-    /// Returns the corners in clockwise order with the touched regions. Returns `None`, and counts the reason, if
-    /// nothing is drawn.
+    /// Returns the corners in clockwise order, with the touched regions. If nothing is drawn, returns `None` and counts
+    /// the reason.
     #[inline(always)]
     fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
         let whole = Assembled::clockwise(corners);
@@ -367,7 +376,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Bins a triangle with corners inside the guard band; `None` stands for a triangle without area.
+    /// Returns the binning result of a triangle whose corners are inside the guard band. `None` is a triangle without
+    /// area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
@@ -378,7 +388,8 @@ impl Transform {
         Touch::from_mask(self.binner.triangle(&whole.outline))
     }
 
-    /// Clips a triangle, and calls `sink` for each triangle of the resulting polygon's fan.
+    /// Clips a triangle, and splits the resulting polygon into a fan of triangles. Calls `sink` for each of them that
+    /// touches a region.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,

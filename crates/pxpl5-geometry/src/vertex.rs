@@ -1,8 +1,8 @@
-//! Vertices shared by many triangles, each transformed once.
+//! Vertices that many triangles share, each transformed only once.
 //!
-//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from
-//! these vertices. The results equal those of [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`],
-//! which handle the other triangles.
+//! From these vertices, triangles that need no clipping are [binned](Transform::touched) and set up in
+//! [groups](crate::TriangleLanes). The results equal those of [`Transform::bin`], [`Transform::gouraud`] and
+//! [`Transform::phong`]. These three functions handle the triangles that need clipping.
 
 use crate::clip::Guard;
 use crate::light::{self, ModelLight, NormalRows};
@@ -15,25 +15,27 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen in one view, for all triangles that share the vertex.
+/// A vertex on the screen in one view. All triangles at this vertex share it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// The x of a vertex outside the guard band: greater than any x inside. Differences with this x stay exact.
+/// The x that marks a vertex outside the guard band. It is greater than any x inside, and its differences from other x
+/// are still exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 
-/// A vertex on the screen with its lit colour or its normal in eye coordinates.
+/// A vertex on the screen, with its lit colour or with its normal in eye coordinates.
 ///
-/// A vertex has 32 bytes and is aligned, so that it never crosses a cache line.
+/// The struct has 32 bytes and is aligned to 32 bytes, so it never crosses a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// Measure by which a normal faces the eye, negative if it faces away; 0 for colours.
+    /// Degree to which the normal faces the eye: negative if it faces away; 0 for vertices with colours.
     pub(crate) facing: f32,
-    /// Colour or normal in the expressions' units. Normals lack the half unit for rounding.
+    /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding; normals do
+    /// not.
     pub(crate) values: [f32; 3],
 }
 
@@ -50,13 +52,14 @@ impl ScreenVertex {
     }
 }
 
-/// Rounds a component of a normal as [`screen::normal_fixed`] does, and returns it in the expressions' units.
+/// Rounds a component of a normal like [`screen::normal_fixed`]. Returns the result in the units of plane expressions.
 #[inline(always)]
 fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
 }
 
-/// Rounds a component of a lit colour as [`screen::colour_fixed`] does, and returns it in the expressions' units.
+/// Rounds a component of a lit colour like [`screen::colour_fixed`]. Returns the result in the units of plane
+/// expressions.
 #[inline(always)]
 fn snapped_colour(component: f32) -> f32 {
     screen::colour_value(screen::colour_fixed(component))
@@ -71,7 +74,7 @@ impl Transform {
         ScreenVertex(if self.guard.contains(clip) { self.to_screen.snap(clip) } else { NOT_INSIDE })
     }
 
-    /// Transforms many vertices from their world positions to the screen, several at once.
+    /// Transforms many vertices from their world positions to the screen, several at a time.
     #[must_use]
     pub fn screen_vertices(&self, positions: &[Vec3]) -> Vec<ScreenVertex> {
         let mut out = Vec::with_capacity(positions.len());
@@ -83,8 +86,8 @@ impl Transform {
 
     /// Returns vertices with normals in eye coordinates, for Phong shading.
     ///
-    /// The slices hold each vertex's place on the screen, and its position and normal in the world. The shortest slice
-    /// determines the number of vertices.
+    /// The slices hold, for each vertex, its position on the screen, its position in the world and its normal in the
+    /// world. The shortest slice determines the number of vertices.
     #[must_use]
     pub fn vertex_normals(
         &self,
@@ -100,8 +103,8 @@ impl Transform {
 
     /// Returns vertices with lit colours, for Gouraud shading.
     ///
-    /// The slices hold each vertex's place on the screen, and its position, normal and colour in the world. The
-    /// shortest slice determines the number of vertices.
+    /// The slices hold, for each vertex, its position on the screen, its position in the world, its normal in the world
+    /// and its colour. The shortest slice determines the number of vertices.
     #[must_use]
     pub fn vertex_colours(
         &self,
@@ -123,8 +126,8 @@ fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
     on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
-/// Appends the results of [`Transform::screen_vertex`]. The loops are plain and compiled once for each vector unit: see
-/// [`crate::lanes`].
+/// Transforms vertices and appends the results to `out`. The results equal those of [`Transform::screen_vertex`]. The
+/// loops are plain Rust, compiled once for each vector unit: see [`crate::lanes`].
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn append_lanes(
     positions: &[[Vec3; LANES]],
@@ -146,7 +149,7 @@ fn append_lanes(
         let mut x = [0; LANES];
         let mut y = [0; LANES];
         let mut z = [0; LANES];
-        // Divide and snap all of them, also those outside: a loop without branches is vectorized.
+        // Divide and snap all vertices, also those outside the guard band: a loop without branches is vectorized.
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
             let inside = guard.contains(point);
@@ -163,7 +166,7 @@ fn append_lanes(
     }
 }
 
-/// Sets the normals of vertices, several at once.
+/// Sets the normals of vertices, several at a time.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mut [SurfaceVertex]) {
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
@@ -192,7 +195,7 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
     }
 }
 
-/// Sets the lit colours of vertices, several at once.
+/// Sets the lit colours of vertices, several at a time.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_colours(
     light: &ModelLight<'_>,
@@ -237,7 +240,7 @@ mod tests {
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),
         };
         let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("finite");
-        // Positions in front, behind, beside and in the plane of the eye, and positions that are not finite.
+        // Positions in front of the eye, behind it, beside it and in its plane, and positions that are not finite.
         let place = |i: i32| Vec3::new((i % 23 - 11) as f32, (i % 7 - 3) as f32 * 0.7, (i % 41 - 30) as f32 * 0.8);
         let mut positions: Vec<_> = (0..2_003).map(place).collect();
         positions.extend([Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::MAX), Vec3::new(0.0, 0.0, f32::NEG_INFINITY)]);
@@ -254,7 +257,7 @@ mod tests {
         };
         let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("finite");
         let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
-        // Normals in all directions, and some without a direction.
+        // Normals in all directions, and some normals of length 0 or with numbers that are not finite.
         let direction = |i: i32| match i % 40 {
             38 => Vec3::ZERO,
             39 => Vec3::NAN,

@@ -1,4 +1,4 @@
-//! From world to clip coordinates: the matrices of an eye, and the picture.
+//! View of an eye: the matrices from world to clip coordinates, and the picture.
 
 use crate::newton;
 use crate::regions::RegionMask;
@@ -8,23 +8,23 @@ use serde::{Deserialize, Serialize};
 
 /// Largest width of a picture in pixels, and largest height in frame lines.
 ///
-/// Together with [`crate::GUARD_PIXELS`], this limit keeps edge expressions in 32 bits.
+/// Together, this limit and [`crate::GUARD_PIXELS`] ensure that edge expressions fit 32 bits.
 pub const MAX_PICTURE: u32 = 2048;
 
 /// The matrices of one eye.
 ///
-/// Eye coordinates are right-handed, looking along -Z. Depth is 0 at the near plane and 1 at the far plane, as in
-/// `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
+/// Eye coordinates are right-handed, and the eye looks along -Z. Depth is 0 at the near plane and 1 at the far plane,
+/// as in `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewTransform {
-    /// Matrix from world (or model) to eye coordinates. Lighting and spheres need a rotation, translation and uniform
-    /// scale.
+    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, it must consist of a
+    /// rotation, a translation and a uniform scale.
     pub model_view: Mat4,
-    /// Matrix from eye to clip coordinates.
+    /// Matrix from eye coordinates to clip coordinates.
     pub projection: Mat4,
 }
 
-/// A picture: its division into regions, and the lines of the frame that it contains.
+/// A picture: its division into regions, and its selection of the frame's lines (all, even or odd).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "PictureFields", into = "PictureFields")]
 pub struct Viewport {
@@ -39,7 +39,7 @@ struct PictureFields {
     lines: Lines,
 }
 
-/// Reason why a picture or a view is rejected.
+/// Reason why a picture or a view is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
@@ -79,14 +79,14 @@ impl Viewport {
     /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
     pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
 
-    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the field is line 2r (even) or 2r + 1 (odd) of
-    /// the frame.
+    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is frame line 2r; row r of the
+    /// odd field is frame line 2r + 1.
     #[must_use]
     pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
     }
 
-    /// Creates a picture of any size and division into regions.
+    /// Creates a picture with any size and any division into regions.
     ///
     /// # Errors
     /// [`ViewError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can hold.
@@ -113,13 +113,13 @@ impl Viewport {
         self.grid
     }
 
-    /// Returns the lines of the frame that the picture contains.
+    /// Returns the selection of the frame's lines that the picture contains.
     #[must_use]
     pub const fn lines(&self) -> Lines {
         self.lines
     }
 
-    /// Returns the number of frame lines from one row of the picture to the next: 1 or 2.
+    /// Returns the number of frame lines from one row of the picture to the next: 1 for a frame, 2 for a field.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
@@ -128,7 +128,7 @@ impl Viewport {
         }
     }
 
-    /// Returns the frame line of the picture's row 0: 0 or 1.
+    /// Returns the frame line of the picture's first row: 0 or 1.
     #[must_use]
     pub const fn first_line(&self) -> u32 {
         match self.lines {
@@ -137,7 +137,7 @@ impl Viewport {
         }
     }
 
-    /// Returns the number of lines of the frame that the picture belongs to.
+    /// Returns the height in lines of the frame to which the picture belongs.
     #[must_use]
     pub const fn frame_lines(&self) -> u32 {
         self.grid.height * self.line_step()
@@ -162,9 +162,9 @@ impl From<Viewport> for PictureFields {
     }
 }
 
-/// Columns of a 4 x 4 matrix, which is multiplied in one fixed order on every host.
+/// Columns of a 4 x 4 matrix. Products are computed in one fixed order on every host.
 ///
-/// The product of glam uses the host's vector unit, whose order of additions differs from the scalar order.
+/// The library glam uses the host's vector unit for products. Its order of additions differs from the scalar order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
@@ -173,12 +173,12 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the number in a row and a column.
+    /// Returns the element in a row and a column.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }
 
-    /// Returns true if the matrix is zero in all of these cells, given as row and column.
+    /// Returns true if all of the given elements are zero. Each element is given as its row and column.
     pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
         cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }
@@ -187,7 +187,7 @@ impl Columns {
         self.0.iter().flatten().all(|v| v.is_finite())
     }
 
-    /// Returns `self * v`, computed in 64 bits.
+    /// Returns the product `self * v`, computed in double precision.
     fn times(&self, v: [f64; 4]) -> [f64; 4] {
         std::array::from_fn(|row| {
             let terms: [f64; 4] = std::array::from_fn(|column| self.cell(row, column) * v[column]);
@@ -195,7 +195,7 @@ impl Columns {
         })
     }
 
-    /// Returns the point that an affine matrix maps to the origin, or the origin if there is no such point.
+    /// Returns the point that an affine matrix maps to the origin. If there is no such point, returns the origin.
     fn origin(&self) -> Vec3 {
         let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
         let determinant = dot(x, cross(y, z));
@@ -205,11 +205,11 @@ impl Columns {
     }
 }
 
-/// Maps points of the world to eye or clip coordinates, relative to the eye.
+/// Map from points of the world to eye or clip coordinates, computed relative to the eye.
 ///
-/// `A p + t` loses precision if p is far from the world's origin, since it is a difference of two large numbers. The
-/// code computes `A (p - o) + t'` instead, where o is the eye's position and `t' = A o + t` is computed in 64 bits. The
-/// error of the subtraction is at most half the last bit of its result.
+/// For a point p far from the world's origin, `A p + t` loses precision, since it is a difference of two large numbers.
+/// The code computes `A (p - o) + t'` instead. Here o is the eye's position, and `t' = A o + t` is computed in double
+/// precision. The error of the subtraction `p - o` is at most half the last bit of its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FromWorld {
     columns: [[f32; 4]; 4],
@@ -232,7 +232,7 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Returns rows x, y, z, w of the matrix for points relative to [`Self::origin`].
+    /// Returns the rows x, y, z and w of the matrix. The matrix applies to points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }
@@ -242,7 +242,7 @@ impl FromWorld {
         self.origin
     }
 
-    /// Maps a point of the world; the result has four coordinates.
+    /// Maps a point of the world to four homogeneous coordinates.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
         let [x, y, z] = [p.x - self.origin.x, p.y - self.origin.y, p.z - self.origin.z];
@@ -250,7 +250,7 @@ impl FromWorld {
         std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// Returns the greatest factor by which an axis is stretched; NaN if there is none.
+    /// Returns the greatest factor by which the map stretches an axis; NaN if there is none.
     pub(crate) fn scale(&self) -> f64 {
         let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {
             let axis = [x, y, z].map(f64::from);

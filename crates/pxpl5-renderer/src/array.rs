@@ -7,39 +7,39 @@ use std::sync::Arc;
 /// Pixels of the array: 128 x 128 (F89).
 pub const PIXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// One bit of every pixel: the bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
+/// One bit of every pixel. The bit of pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
 pub type Plane = [u64; PIXELS / 64];
 
 pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
 /// A 128 x 128 array of one-bit processors with 208 bits of memory each.
 ///
-/// All implementations agree in every bit of pixel memory and Enable after every instruction, and in [`Executed`].
+/// After every instruction, all implementations agree in every bit of pixel memory and of Enable, and in [`Executed`].
 pub trait PixelArray {
     /// Executes a list of instructions.
     ///
     /// # Errors
-    /// [`ArrayFault`] at the first illegal word or operand. The instructions before the fault have been executed. The
-    /// faulty instruction and the rest of the list have not. Faults are counted.
+    /// [`ArrayFault`] at the first illegal word or operand. The instructions before the fault are executed. The illegal
+    /// instruction and the rest of the list are not executed. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
-    /// Executes the commands of a list that touch the region, and returns the pixels that were copied.
+    /// Executes the commands of a list that touch the region, and returns the regions whose pixels were copied.
     ///
-    /// A fault ends the execution, as on the hardware; earlier drawing stays. Pixel memory ends as after
-    /// [`Self::execute`], but Enable may differ. `room` is scratch memory for words.
+    /// A fault ends the execution, as on the hardware; pixels drawn before the fault stay. The final pixel memory is
+    /// the same as after [`Self::execute`], but Enable can differ. `room` is a buffer for words.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_visible(room);
         self.execute(room).map_or_else(|_| Vec::new(), |executed| executed.outputs)
     }
 
-    /// Returns bit `bit` (0 to 207) of all pixels.
+    /// Returns bit number `bit` (0 to 207) of all pixels.
     ///
     /// # Panics
     /// If `bit` is 208 or more.
     fn plane(&self, bit: usize) -> Plane;
 
-    /// Overwrites bit `bit` (0 to 207) of all pixels.
+    /// Overwrites bit number `bit` (0 to 207) of all pixels.
     ///
     /// # Panics
     /// If `bit` is 208 or more.
@@ -51,8 +51,8 @@ pub trait PixelArray {
     /// Overwrites the Enable register of all pixels.
     fn set_enable(&mut self, plane: &Plane);
 
-    /// Returns the colour of the selected context, 0x00RRGGBB, row by row, of the left top `width` x `height` pixels
-    /// (at most 128 x 128).
+    /// Returns the colours of the selected context's upper left `width` x `height` pixels (at most 128 x 128). They are
+    /// 0x00RRGGBB, row by row.
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
     /// Sets pixel memory, Enable, backing store, selected region and the count of faults to zero.
@@ -62,22 +62,22 @@ pub trait PixelArray {
     fn faults(&self) -> u64;
 }
 
-/// Result of executing a list of instructions, apart from the changes of pixels.
+/// Result of executing a list of instructions, in addition to the changes of pixels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
     pub instructions: u32,
-    /// Clocks in which the array was busy.
+    /// Number of clocks for which the array was busy.
     pub clocks: u64,
-    /// Pixels that were sent to frame buffers, one entry for each output instruction.
+    /// Pixels sent to frame buffers, one entry for each output instruction.
     pub outputs: Vec<OutputRegion>,
 }
 
-/// The pixels of an output instruction.
+/// The pixels that an output instruction sends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
     /// Frame buffer, region and picture that receive the pixels.
     pub target: CopyTarget,
-    /// One word for each pixel, 0x00RRGGBB, row by row of the region's rectangle.
+    /// Colours of the region's pixels: one word 0x00RRGGBB for each pixel, row by row.
     pub pixels: Arc<[Word]>,
 }
 
@@ -85,7 +85,7 @@ pub struct OutputRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
 pub struct ArrayFault {
-    /// Index of the instruction's first word in the list.
+    /// Index in the list of the instruction's first word.
     pub position: usize,
     pub kind: FaultKind,
 }
@@ -97,15 +97,15 @@ pub enum FaultKind {
     /// The words encode no instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A field, addressed relative to the selected context, ends beyond pixel memory.
+    /// A field extends beyond the end of pixel memory. Its address is relative to the selected context.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
-        /// The field as the instruction names it: address relative to the context's base, width in bits.
+        /// The field as encoded in the instruction: address relative to the context's first bit, and width in bits.
         operand: Operand,
         /// First bit of the selected context in pixel memory.
         base: u8,
     },
-    /// An operand overlaps the destination in a way that the instruction does not allow.
+    /// An operand overlaps the destination, and the instruction does not allow this overlap.
     #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
         /// First bit of the destination.

@@ -1,8 +1,8 @@
 //! Bit-serial reference model of the pixel array: one bit of one instruction per clock, as in the hardware.
 //!
-//! The array works in two modes. The default mode moves all planes of all pixels and defines correct behaviour. The
-//! skipping mode (see [`runs`]) leaves out work that changes nothing. Tests compare both modes in every bit, clock and
-//! fault.
+//! The array has two modes. The default mode moves all planes of all pixels, and defines correct behaviour. The
+//! skipping mode (see [`runs`]) leaves out work that changes no bit. Tests check that both modes agree in every bit,
+//! clock and fault.
 
 mod arithmetic;
 mod collect;
@@ -26,25 +26,26 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// Clocks are counted as the planes move, which tests [`crate::isa::timing`] independently. The array is the reference
-/// model unless [`Self::skipping`] was called.
+/// Clocks are counted while planes move. So the count is an independent test of [`crate::isa::timing`]. The array is
+/// the reference model unless [`Self::skipping`] was called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// Planes of each block of the backing store, tile by tile.
+    /// Bit planes of each block of the backing store; `None` if nothing was stored in the block. The planes are ordered
+    /// by tile.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Buffer that is reused to avoid allocations.
+    /// Buffer for the current run of instructions. It is reused to avoid allocations.
     run: InstructionRun,
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. `layout` only tells [`PixelArray::read_colour`] where the colour is.
+    /// Creates an array of zeros. `layout` is used only by [`PixelArray::read_colour`], to find the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
@@ -66,10 +67,10 @@ impl BitSerial {
         }
     }
 
-    /// Turns on the skipping mode, which leaves out work that changes nothing.
+    /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// Disabled pixels move no planes. A sign that is known at the corners of a tile needs no adders. Clocks, faults
-    /// and every bit stay the same. The default mode takes ten times as long.
+    /// Disabled pixels move no planes. If the corners of a tile determine a sign, the adders do not run. Clocks, faults
+    /// and all bits stay the same. The default mode takes ten times as long.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }
@@ -94,7 +95,7 @@ impl BitSerial {
     }
 
     fn instruction(&mut self, instruction: &ArrayInstruction, executed: &mut Executed) -> Result<(), FaultKind> {
-        // Instructions that move no bits are handled here; the others by the functions for Enable and for fields.
+        // Instructions that move no bits are executed here. The functions for Enable and for fields execute the others.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -113,7 +114,7 @@ impl BitSerial {
             }
             _ => return self.enable_instruction(instruction),
         }
-        // These instructions take constant time; the transfer of a block continues in the background.
+        // These instructions take constant time. The transfer of a block continues in the background.
         self.clock += u64::from(CONTROL_CLOCKS);
         Ok(())
     }
@@ -152,7 +153,8 @@ impl BitSerial {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
-        // All tiles work in step, so the clocks of one tile are the clocks of all. A skipped tile counts no clocks.
+        // All tiles work in step, so the clocks of one tile are the clocks of all tiles. A skipped tile counts no
+        // clocks.
         self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
         Ok(())
     }
@@ -167,7 +169,7 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns a field's values, row by row, of the left top pixels.
+    /// Returns the values of a field in the upper left `width` x `height` pixels, row by row.
     fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         let size = REGION_SIZE as usize;
         let mut values = vec![0; size * size];

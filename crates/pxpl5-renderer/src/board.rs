@@ -18,18 +18,18 @@ use std::sync::{Arc, OnceLock};
 /// An event of a renderer board.
 #[derive(Clone, Debug)]
 pub enum RendererEvent {
-    /// A message begins to arrive (phase `Arrive`).
+    /// A message begins to arrive. The event has phase `Arrive`.
     Announce {
-        /// Commands for the FIFO. Other words are discarded and counted as illegal.
+        /// Message with commands for the FIFO. Other words are discarded and counted as illegal.
         message: Message,
         /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
     /// The controller starts the next copy command.
     CopyBegins,
-    /// The copied region's colours are complete in the backing store.
+    /// The colours of the region being copied are now complete in the backing store.
     Stored,
-    /// The ring has delivered the last pixel of the region being copied (phase `Arrive`).
+    /// The ring has delivered the last pixel of the region being copied. The event has phase `Arrive`.
     Sent,
 }
 
@@ -38,16 +38,16 @@ pub enum RendererEvent {
 pub enum RendererOutput {
     /// Notice of the time at which the last word of the announced message enters the FIFO.
     Accept {
-        /// Time at which the last word is in the FIFO: one word time per word, plus the time without room.
+        /// Time at which the last word is in the FIFO. Each word takes one word time, plus its wait for room.
         last_word_at: Time,
     },
     /// A message for the ring.
     Send {
-        /// Pixels of a region, or the acknowledgement of a copy.
+        /// The pixels of a region, or the acknowledgement of a copy.
         message: Message,
-        /// True if the ring must report delivery by [`RendererEvent::Sent`].
+        /// True if the ring must report the delivery of the message with [`RendererEvent::Sent`].
         ticket: bool,
-        /// True if the receiver's port stays reserved for the next message.
+        /// True if the receiver's port must stay reserved for the next message of this renderer.
         hold: bool,
     },
 }
@@ -55,17 +55,17 @@ pub enum RendererOutput {
 /// Counters of a renderer board.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
-    /// Commands received in all lists, including copies and unknown commands.
+    /// Number of commands received, including copies and unknown commands.
     pub commands: u64,
-    /// Words received, without the overhead of messages on the ring.
+    /// Number of words received, without the overhead of messages on the ring.
     pub words: u64,
-    /// Regions whose last pixel a frame buffer has received.
+    /// Number of regions whose last pixel has arrived at a frame buffer.
     pub regions_copied: u64,
-    /// Commands with an unknown operation code, which are skipped.
+    /// Number of commands that were skipped because their operation code is unknown.
     pub illegal_commands: u64,
 }
 
-/// One renderer board: FIFO and controller in simulated time, and the pixels of its regions as pixel jobs.
+/// One renderer board. The FIFO and the controller run in simulated time. The pixels of regions are pixel jobs.
 ///
 /// A pixel job computes its pixels only when they are read.
 #[derive(Debug)]
@@ -75,43 +75,45 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    /// True if regions without primitives are cached and commands that touch no pixel are left out.
+    /// True if two optimizations are on: regions without primitives are cached, and commands that touch no pixel are
+    /// left out.
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// The transfer to a frame buffer in progress.
+    /// Copy whose region is on its way to a frame buffer; `None` if there is none.
     copying: Option<CopyOrder>,
-    /// Copies through the backing store whose regions are still in pixel memory. The first may be moving to the backing
-    /// store.
+    /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first region to
+    /// the backing store can be in progress.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store and wait for an earlier transfer or for their release.
+    /// Copies whose regions are in the backing store. Each waits for an earlier transfer, or for the command that
+    /// releases it.
     stored: VecDeque<PendingCopy>,
-    /// Lists received so far, kept only while the FIFO is watched.
+    /// Command lists received so far. They are kept only while the FIFO is watched.
     sent: Option<SentLists>,
-    /// Regions whose copy command has started since they were last asked for.
+    /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
     stats: RendererStats,
 }
 
-/// A region that a renderer has drawn: when its commands were executed.
+/// A region that a renderer has drawn, with the times of its commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Display, buffer and place that the region is for.
+    /// Display, buffer and place for which the region is drawn.
     pub target: CopyTarget,
-    /// Words of its pixels that are sent.
+    /// Number of words that carry the region's pixels to the frame buffer.
     pub words: u32,
-    /// When the controller had done with the region before.
+    /// Time at which the controller ended its work on the previous region.
     pub begun_at: Time,
-    /// When the last command before the copy command had been executed, and the controller waited for the copy command.
+    /// Time at which the last command before the copy command ended. The controller then waited for the copy command.
     pub finished_at: Time,
-    /// When the copy command started; later than `finished_at` where it came later.
+    /// Start time of the copy command. It is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
-    /// Execution time of the commands since `begun_at`; in the rest the controller waited for commands.
+    /// Execution time of the commands since `begun_at`. For the rest of the time, the controller waited for commands.
     pub executed: Span,
 }
 
-/// Lists sent to a region context since it was cleared.
+/// Command lists sent to a region context since it was last cleared.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
@@ -120,23 +122,23 @@ struct ContextLog {
 }
 
 impl ContextLog {
-    /// Drops the lists so far. Pixel jobs of copied regions keep their own reference.
+    /// Drops all lists. Pixel jobs of copied regions keep their own reference to the lists.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
             Some(lists) => lists.clear(),
-            // Reserves as much room as before: the next picture's region has a similar number of lists.
+            // Reserve as much room as before: the next picture's region has a similar number of lists.
             None => self.lists = Arc::new(Vec::with_capacity(self.lists.len())),
         }
     }
 }
 
-/// A copy command in the FIFO, and the content of its region at the time of execution.
+/// A copy command in the FIFO, and the source of its region's pixels.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
     image: Arc<dyn PixelSource>,
-    /// True if the region may leave the backing store as soon as it is stored there.
+    /// True if the region can leave the backing store as soon as it is complete there.
     is_released: bool,
 }
 
@@ -168,7 +170,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event at `context.now()`. Follow-up events and outputs go to `context`.
+    /// Handles one event at time `context.now()`. Later events and outputs go to `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -182,7 +184,7 @@ impl Renderer {
         self.note(&message, context.now());
         match message.body {
             Body::Commands(list) => self.take(list),
-            // Words of no known command still occupy the FIFO; the controller discards them.
+            // Words that are no known command still take room in the FIFO. The controller discards them.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
                 self.fifo.take(CommandBatch { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
@@ -192,7 +194,7 @@ impl Renderer {
         self.report(progress, context);
     }
 
-    /// Records a message for [`Self::array_at`] while the FIFO is watched.
+    /// Records a message for [`Self::array_at`] if the FIFO is watched.
     fn note(&mut self, message: &Message, now: Time) {
         let first_word = self.stats.words;
         self.stats.words += u64::from(message.words);
@@ -288,7 +290,7 @@ impl Renderer {
         }
     }
 
-    /// Releases a region that is kept in the backing store. A command for an unknown region counts as illegal.
+    /// Releases a region that waits in the backing store. A release of an unknown region counts as an illegal command.
     fn release(&mut self, target: CopyTarget, context: &mut Context<RendererEvent, RendererOutput>) {
         let kept = self.stored.iter_mut().chain(&mut self.unstored);
         let found = kept.filter(|copy| !copy.is_released).find(|copy| copy.order.target == target);
@@ -301,7 +303,8 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours (and depths, as a second block) to the backing store when room is free.
+    /// Moves a finished region's colours to the backing store when the store has room. If depths are copied too, they
+    /// move as a second block.
     ///
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -351,7 +354,7 @@ impl Renderer {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
         let all = width * height * order.content.words();
         let parts = all.div_ceil(MAX_MESSAGE_WORDS);
-        // Reserve the frame buffer's port for all parts; only the last part asks for a ticket.
+        // Reserve the frame buffer's port for all parts. Only the last part asks for a report of its delivery.
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(all - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
@@ -385,32 +388,33 @@ impl Renderer {
         self.stats
     }
 
-    /// Returns the time spent executing commands, without copies.
+    /// Returns the time spent executing commands so far, without copies.
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
     }
 
-    /// Returns the time spent executing commands up to an instant that is not before the last event, without copies.
+    /// Returns the time spent executing commands until `now`, without copies. `now` must not be before the last event.
     #[must_use]
     pub fn busy_at(&self, now: Time) -> Span {
         self.fifo.busy_at(now)
     }
 
-    /// Returns the time up to an instant for which copy commands have held the controller.
+    /// Returns the time until `now` for which copy commands have occupied the controller.
     #[must_use]
     pub fn copying_at(&self, now: Time) -> Span {
         self.fifo.blocked_at(now)
     }
 
-    /// Takes the regions whose copy command has started, in order.
+    /// Removes and returns the regions whose copy commands have started, in the order of these starts.
     pub fn drain_drawn(&mut self) -> impl Iterator<Item = DrawnRegion> + '_ {
         self.drawn.drain(..)
     }
 
-    /// Returns pixel memory after all lists that were sent to each region context since its last clear.
+    /// Returns pixel memory as it is after all received command lists. Of each region context, only the lists since its
+    /// last clear count.
     ///
-    /// Returns `None` if no context has received words of pixels, for example when pixels are off.
+    /// Returns `None` if no context has received lists that change pixels, for example when pixels are off.
     #[must_use]
     pub fn pixel_memory(&self) -> Option<Lanes> {
         if self.logs.iter().all(|log| log.lists.is_empty()) {
@@ -420,24 +424,24 @@ impl Renderer {
         for list in self.logs.iter().flat_map(|log| log.lists.iter()) {
             let mut words = Vec::new();
             list.append_words(&mut words);
-            // A fault stops the list, as on the hardware; what was drawn before stays.
+            // A fault ends the list, as on the hardware. Pixels drawn before the fault stay.
             let _ = array.execute(&words);
         }
         Some(array)
     }
 
-    /// Turns off two optimizations: from now on all lists of a region are drawn, and no region is cached.
+    /// Turns off two optimizations. From now on, no region is cached, and commands that touch no pixel are drawn too.
     pub const fn draw_every_region(&mut self) {
         self.caches_empty_regions = false;
     }
 
-    /// Starts to record when words enter and leave the FIFO.
+    /// Starts the record of words that enter and leave the FIFO.
     pub fn watch_fifo(&mut self) {
         self.fifo.watch();
         self.sent.get_or_insert_default();
     }
 
-    /// Returns a snapshot of the board at `now`, which must not be before the last event.
+    /// Returns a snapshot of the board at time `now`, which must not be before the last event.
     #[must_use]
     pub fn look(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
@@ -451,25 +455,26 @@ impl Renderer {
         }
     }
 
-    /// Returns the array after all commands that have started by `now`, which must not be before the last event.
+    /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be before
+    /// the last event.
     ///
-    /// A command counts as executed when it starts. Returns `None` if the FIFO is not [watched](Renderer::watch_fifo)
-    /// or no words of pixels were sent.
+    /// A command takes effect when it starts. Returns `None` if the FIFO is not [watched](Renderer::watch_fifo), or if
+    /// no command has changed a pixel.
     #[must_use]
     pub fn array_at(&self, now: Time) -> Option<Lanes> {
         let started = self.fifo.passed(now)?.started;
         self.sent.as_ref()?.executed(started, self.pool.layout())
     }
 
-    /// Returns the changes of the FIFO's content since the last call, in no order.
+    /// Returns the changes of the number of words in the FIFO since the last call. They are not sorted by time.
     ///
-    /// A positive number of words enters when a whole command has arrived. A negative number leaves when the command
-    /// starts. Times may lie in the future, as predicted from the known input.
+    /// A positive change is a command that has arrived completely; a negative change is a command that starts. A time
+    /// can lie in the future. It is then a prediction from the input known so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }
 
-    /// Returns what the board waits for, if it is blocked by a copy.
+    /// Returns the frame buffer and region that the board waits for, if a copy blocks the board.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let order = self.copying.filter(|_| self.fifo.is_blocked())?;

@@ -6,7 +6,8 @@
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside where the expression is `>= 0`. The sender folds the tie rule into `c`.
+//! - Edge: a pixel is inside where the expression is `>= 0`. For pixels exactly on the edge, the sender adjusts `c` by
+//!   the tie rule.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
 //! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles
@@ -44,11 +45,11 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// The kind of a command. The numeric value is its opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command. Its numeric value is the opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// Selects context and region: see [`SelectRegion`].
+    /// Selects the context and the region of the commands that follow: see [`SelectRegion`].
     SelectRegion = 1,
     /// Clears colour and Z: see [`Clear`].
     Clear = 2,
@@ -103,7 +104,7 @@ impl CommandKind {
         self as u8
     }
 
-    /// Returns the command's length in words, which is the same in every layout.
+    /// Returns the length of the command in words. The length is the same in every layout.
     #[must_use]
     pub const fn words(self) -> u32 {
         match self {
@@ -119,7 +120,7 @@ impl CommandKind {
         }
     }
 
-    /// Returns the number of clocks in which the command's program keeps the array busy.
+    /// Returns the number of clocks for which the command's program keeps the array busy.
     ///
     /// # Errors
     /// [`Unsupported`] if the layout lacks a field that the program needs.
@@ -128,7 +129,7 @@ impl CommandKind {
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
 
-    /// Returns the number of clocks in which the backing store is busy afterwards, in parallel with the array.
+    /// Returns the number of clocks for which the backing store is busy after the command, in parallel with the array.
     #[must_use]
     pub const fn backing_clocks(self) -> u32 {
         match self {
@@ -145,14 +146,14 @@ pub struct Unsupported {
     pub kind: CommandKind,
     /// Name of the layout, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// The missing field or number of scratch bits.
+    /// The missing field, or the required number of scratch bits, as text.
     pub missing: &'static str,
 }
 
 /// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Selects context and region.
+    /// Selects the context and the region of the commands that follow.
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
@@ -219,7 +220,7 @@ impl Command {
         Unsupported { kind: self.kind(), layout: layout.plan().name, missing }
     }
 
-    /// Appends the words of the command's [`program`](Command::program).
+    /// Appends the words of the command's [program](Command::program) to `out`.
     ///
     /// # Errors
     /// [`Unsupported`] if the layout lacks a field that the program needs.
@@ -233,20 +234,20 @@ impl Command {
         Ok(())
     }
 
-    /// Decodes the command that begins at `position`, and returns it with its length in words.
+    /// Decodes the command that begins at word `position`. Returns the command and its length in words.
     ///
     /// # Errors
-    /// [`DecodeError`] if the words are no instructions, or not the program of a command in this layout.
+    /// [`DecodeError`] if the words encode no instructions, or if they are not the program of a command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = ArrayInstruction::decode(words, position)?;
-        // The first instruction names the kind, which fixes the number of words.
+        // The label of the first instruction gives the kind, and the kind gives the number of words.
         let kind = kind_of(&first).ok_or_else(|| not_the_command(words, position, (words[position] >> 16) as u8))?;
         let length = kind.words() as usize;
         let end = words.len().min(position + length);
         let program = decode_range(&words[..end], position)?;
         let command = Self::from_program(kind, &program, layout)
             .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
-        // The operands alone do not prove that the rest of the program is the same, so compare all of it.
+        // Equal operands do not prove that the rest of the program is equal, so compare the whole program.
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
             _ => Err(not_the_command(words, position, kind.opcode())),
@@ -270,7 +271,8 @@ impl Command {
         }
     }
 
-    /// Extracts the operands of a program. The program may still differ elsewhere, so the caller must compare it.
+    /// Extracts the operands from the program of a command. Other parts of the program can still differ, so the caller
+    /// must compare all of it.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
@@ -288,12 +290,12 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that are not the command named by `label`.
+/// Returns the error for valid instructions that are not the program of the command that `label` names.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
 
-/// Name of a field that a layout lacks.
+/// Name of a field that is missing in a layout.
 pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {

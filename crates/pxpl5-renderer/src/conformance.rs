@@ -1,7 +1,8 @@
-//! Conformance suite for pixel arrays: an array must equal another one in every bit after every list.
+//! Conformance suite for pixel arrays: after every list, an array must equal another array in every bit.
 //!
-//! [`crate::BitSerial`] is the reference. A test of an array calls [`instructions`], [`commands`] and any number of
-//! times [`random_round`], with successive round numbers. The number alone reproduces a failing round.
+//! [`crate::BitSerial`] is the reference model. A test of another array calls [`instructions`] and [`commands`] once.
+//! It also calls [`random_round`] with the round numbers 0, 1, 2 and so on. The round number alone is enough to repeat
+//! a failing round.
 
 mod random;
 
@@ -13,17 +14,17 @@ use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
-/// A difference between two arrays that have executed the same list.
+/// A difference between two arrays after both have executed the same list.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// The last executed list, as described by the caller.
+    /// Name of the last executed list, as given by the caller.
     pub after: String,
-    /// Description of the difference, with the first pixel that differs.
+    /// Description of the difference, including the first pixel that differs.
     pub difference: String,
 }
 
-/// Executes a list on both arrays and compares results, Enable and all 208 bits of all pixels.
+/// Executes a list on both arrays. Then compares their results, Enable, and all 208 bits of all pixels.
 ///
 /// # Errors
 /// The first [`Mismatch`].
@@ -67,7 +68,7 @@ fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
     Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
 }
 
-/// Fills both arrays with the same noise, which includes planes of only zeros or only ones.
+/// Fills both arrays with the same random bits. In some bit planes all bits are zero, or all bits are one.
 pub fn scramble(random: &mut Random, a: &mut impl PixelArray, b: &mut impl PixelArray) {
     for bit in 0..MEMORY_BITS as usize {
         let plane = noise(random);
@@ -94,7 +95,7 @@ fn noise(random: &mut Random) -> Plane {
     plane
 }
 
-/// Tests every instruction with extreme operands on arrays of noise.
+/// Tests every instruction with extreme operands, on arrays of random bits.
 ///
 /// # Errors
 /// The first [`Mismatch`].
@@ -111,7 +112,7 @@ pub fn instructions(definition: &mut impl PixelArray, subject: &mut impl PixelAr
     Ok(())
 }
 
-/// Tests random lists of the layout's commands on arrays of noise, in six rounds.
+/// Tests random lists of the layout's commands, on arrays of random bits, in six rounds.
 ///
 /// # Errors
 /// The first [`Mismatch`].
@@ -126,10 +127,11 @@ pub fn commands(
     Ok(())
 }
 
-/// Runs one round of the differential fuzzer: noise, then lists of commands, single instructions and invalid words.
+/// Runs one round of random tests: fills the arrays with random bits, then executes lists of commands, single
+/// instructions and invalid words.
 ///
 /// # Errors
-/// The first [`Mismatch`], which names the round.
+/// The first [`Mismatch`]. Its text contains the round number.
 pub fn random_round(
     layout: &Layout,
     number: u64,
@@ -155,7 +157,7 @@ fn corner_instructions() -> Vec<ArrayInstruction> {
         ArrayInstruction::Select { context_base: 52, left: u16::MAX, top: 384 },
         ArrayInstruction::Wait,
     ];
-    // Expressions, fields and constants have generators of their own.
+    // Instructions with expressions, fields or constants have generators of their own.
     out.extend(corner_expressions());
     out.extend(corner_fields());
     out.extend(corner_constants());
@@ -192,7 +194,7 @@ fn corner_expressions() -> Vec<ArrayInstruction> {
     out
 }
 
-/// Returns a coefficient whose upper bits exceed the 48 bits of a quadratic, and whose lowest bit is set.
+/// Returns a coefficient with upper bits beyond the 48 bits of a quadratic's value, and with its lowest bit set.
 const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
@@ -213,7 +215,7 @@ fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
-/// Widths of destination and operands: equal, narrower, wider, one bit, the largest.
+/// Widths in bits of the destination and the two operands: equal, narrower, wider, one bit, and the largest.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
 fn corner_fields() -> Vec<ArrayInstruction> {
@@ -225,7 +227,7 @@ fn corner_fields() -> Vec<ArrayInstruction> {
             let b = Operand { signed: b_signed, ..Operand::absolute(128, wb) };
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
-            // Destination at the end of pixel memory: the lost upper bits of a product have no place there.
+            // The destination lies at the end of pixel memory, so the upper bits of a product are lost.
             let last = Operand { address: 208 - w, ..destination };
             let low_a = Operand { address: 0, ..a };
             let low_b = Operand { address: 64, ..b };

@@ -1,4 +1,4 @@
-//! Effects of a list of commands on pixel memory, derived from the kinds of its commands.
+//! Effects of a command list on pixel memory, as far as they follow from the kinds of its commands.
 
 use crate::command::CommandKind;
 use pxpl5_wire::CommandRun;
@@ -6,15 +6,15 @@ use pxpl5_wire::CommandRun;
 /// Largest number of region contexts in pixel memory.
 pub const MAX_CONTEXTS: usize = 8;
 
-/// Returns true if a list changes pixels: it contains more than region selections and copies.
+/// Returns true if a command list can change pixels. It then contains other commands than region selections and copies.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Returns the number of words before the clear, for a list that begins by clearing its context.
+/// Returns the number of words before the clear, if a command list begins by clearing its context.
 ///
-/// Once such a list has started, no earlier drawing is visible. Returns `None` for any other list.
+/// When such a list has started, all earlier drawing in the context is erased. For other lists, returns `None`.
 pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     let mut words = 0;
     for run in runs {

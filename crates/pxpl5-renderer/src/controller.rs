@@ -1,4 +1,4 @@
-//! The controller of the array: selected region, latched coefficients, and checks of operands.
+//! The controller of the array: selected context and region, stored coefficients, and checks of operands.
 
 use crate::array::{ArrayFault, FaultKind};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
@@ -31,7 +31,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// An expression whose origin is the array's left top pixel.
+/// An expression with the array's upper left pixel as origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -45,7 +45,8 @@ impl Controller {
         self.top = top;
     }
 
-    /// Decodes the instruction at `position` and checks its operands. Returns it with its length in words.
+    /// Decodes the instruction at word `position` and checks its operands. Returns the instruction and its length in
+    /// words.
     pub(crate) fn fetch(&self, words: &[Word], position: usize) -> Result<(ArrayInstruction, usize), ArrayFault> {
         let (instruction, used) = ArrayInstruction::decode(words, position)
             .map_err(|error| ArrayFault { position, kind: FaultKind::Illegal(error.kind) })?;
@@ -53,8 +54,8 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Latches the coefficients of an expression, or reuses the latched ones, and moves the origin to the region's
-    /// corner.
+    /// Stores the coefficients of an expression, or takes those of the last expression of this kind. Returns the
+    /// expression with the array's upper left pixel as origin.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
@@ -68,28 +69,30 @@ impl Controller {
         }
     }
 
-    /// Returns the screen column and row of the array's left top pixel.
+    /// Returns the picture's column and row at the array's upper left pixel.
     pub(crate) fn origin(&self) -> [i32; 2] {
         [self.left.into(), self.top.into()]
     }
 
-    /// Moves the origin of a linear expression to the array's left top pixel.
+    /// Returns the same linear expression with the array's upper left pixel as origin.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Latches the last linear coefficients of a command that is executed as a whole.
+    /// Stores the last linear coefficients of a command that was executed as a whole. A later instruction can reuse
+    /// them.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Latches the last quadratic coefficients of a command that is executed as a whole.
+    /// Stores the last quadratic coefficients of a command that was executed as a whole. A later instruction can reuse
+    /// them.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
 
-    /// Moves the origin of the latched quadratic expression to the array's left top pixel.
+    /// Returns the stored quadratic expression with the array's upper left pixel as origin.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let x = i64::from(self.left);
@@ -102,7 +105,7 @@ impl Controller {
         }
     }
 
-    /// Returns the bits that an operand names in the selected context.
+    /// Returns the bits of pixel memory that an operand means in the selected context.
     ///
     /// # Errors
     /// [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
@@ -120,9 +123,9 @@ impl Controller {
         }
     }
 
-    /// Checks all operands of an instruction in the selected context.
+    /// Checks all operands of an instruction against pixel memory and against each other, in the selected context.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
-        // Shifts may work in place; products and roots must not overlap their operands.
+        // Shifts can work in place. Products and roots must not overlap their operands.
         match *instruction {
             ArrayInstruction::EnableLoad(bit)
             | ArrayInstruction::EnableStore(bit)
@@ -186,7 +189,7 @@ const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
 }
 
 impl LocalExpression {
-    /// Returns the value at a column and row, sign-extended from the 32 or 48 bits of the evaluation.
+    /// Returns the expression's value at a column and row. The value has 32 or 48 bits and is extended by its sign.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {
             Self::Linear(e) => i64::from(e.at(x, y)),

@@ -1,31 +1,33 @@
-//! The input FIFO and the controller that empties it, computed in closed form for each command.
+//! The input FIFO and the controller that empties it. Times of commands are computed by formulas, without an event for
+//! each.
 //!
 //! Rules (assumed where the papers are silent):
 //!
-//! - A word is put on the channel once the FIFO has room for it, and needs one word time.
+//! - A word enters the channel once the FIFO has room for this word. Each word takes one word time on the channel.
 //! - A command starts when all its words have arrived and the command before it has ended.
 //! - The words of a command leave the FIFO when the command starts.
-//! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before.
+//! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before
+//!   its end.
 //!
-//! A SIMD array takes the same time for any data. So all starts and ends follow from the arrivals, and a command needs
-//! no event.
+//! A SIMD array takes the same time for any data. So all start and end times follow from the arrival times, and a
+//! command needs no event.
 
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
 
-/// Some equal commands in a row, as the FIFO counts them.
+/// Consecutive commands of equal length and execution time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
-    /// Execution time of one command; `None` for a blocking command.
+    /// Execution time of one command; `None` if it is a blocking command.
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times that follow from an arrival or from the end of a copy.
+/// Future times that become known when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
-    /// Time at which the last word of the message in transit enters the FIFO.
+    /// Time at which the last word of the arriving message enters the FIFO; `None` while this time is unknown.
     pub(crate) accepted: Option<Time>,
     /// Time at which a blocking command starts.
     pub(crate) blocks: Option<Time>,
@@ -38,12 +40,13 @@ struct HeldCommand {
     complete: Time,
 }
 
-/// A run of equally long commands that started one after the other in equal steps.
+/// Consecutive commands of equal length that start at equal intervals.
 ///
-/// No step is shorter than the time that a command's words take on a channel.
+/// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Number of the first word that got room when the first command started.
+    /// Index of the first word that enters the room that the first command frees at its start. Words are counted from 0
+    /// since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -52,9 +55,9 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the last of these commands that made room for `word` or for an earlier word.
+    /// Returns the index of the last of these commands whose start frees room for `word` or for an earlier word.
     ///
-    /// `made_room_for` must not be greater than `word`.
+    /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
         if self.count == 1 {
             return 0;
@@ -63,7 +66,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns the run without its first `commands` commands.
+    /// Returns the same sequence without its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -74,16 +77,17 @@ impl Departure {
     }
 }
 
-/// Start times of commands, as far as future arrivals need them.
+/// Start times of past commands, kept as long as the arrival of a later word can depend on them.
 #[derive(Debug, Default)]
 struct StartTimes(VecDeque<Departure>);
 
 impl StartTimes {
-    /// Returns the time at which the words from `first` to `last` have all entered, no earlier than `soonest`.
+    /// Returns the time at which the words with indices `first` to `last` have all entered. The result is at least
+    /// `soonest`.
     ///
-    /// Each word waits for room. The words after it also wait for their own time on the channel. `first` must not
-    /// decrease from call to call. Of commands that made room in equal steps only the last one counts, since a step is
-    /// not shorter than the words' time.
+    /// Each word waits until the FIFO has room for it. Then this word and each word after it take one word time on the
+    /// channel. `first` must not decrease from call to call. Among commands that start at equal intervals, only the
+    /// last one that frees room matters. The reason: an interval is at least as long as the transfer of the words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -98,7 +102,7 @@ impl StartTimes {
         complete
     }
 
-    /// Drops entries that only words before `first` waited for.
+    /// Drops the commands whose freed room is needed only by words before `first`.
     #[inline]
     fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -110,12 +114,12 @@ impl StartTimes {
     }
 }
 
-/// The FIFO and its controller. Depths are in words, times are simulated.
+/// The FIFO and its controller. Depths are in words, times are simulated times.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Commands of the message in transit whose words have no arrival time yet.
+    /// Commands of the arriving message whose arrival times are not known yet.
     in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
@@ -123,52 +127,55 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time at which the controller is free; `None` while a blocking command runs.
+    /// Time from which the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
-    /// Time for which blocking commands have held the controller, and the last of them.
+    /// Total time for which blocking commands have occupied the controller.
     blocked: Span,
     last_block: Block,
-    /// Begin and end of the last wait of the controller for commands.
+    /// Start and end of the last interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of arrivals and departures, kept only while the FIFO is watched.
+    /// Record of arriving and leaving words, kept only while the FIFO is watched.
     watched: Option<Watched>,
 }
 
-/// Execution time up to which commands behind a wait are the selection of the region to copy: 6 clocks of 40 MHz are 150 ns.
+/// Greatest execution time of the commands that select a region for a copy. Commands that take longer after a wait draw
+/// the region. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
-/// The last blocking command.
+/// Times of the last blocking command and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// When the controller was free for the commands before it, and when the last of these ended. The selection of its region does not count
-    /// where the controller waited for it.
+    /// Time from which the controller was free for the commands before this one. `finished_at` is the end of the last
+    /// of them. If the controller waited for the selection of the region to copy, this selection does not count.
     pub(crate) begun_at: Time,
     pub(crate) finished_at: Time,
-    /// When it started.
+    /// Start time of the blocking command.
     pub(crate) start: Time,
-    /// Execution time of the commands before it, since the blocking command before.
+    /// Execution time of the commands between the previous blocking command and this one.
     pub(crate) executed: Span,
-    /// Execution time of all commands before it, and when the blocking command before it ended.
+    /// Execution time of all commands before this one. `resumed_at` is the time at which the previous blocking command
+    /// ended.
     busy: Span,
     resumed_at: Time,
 }
 
-/// Record of the words that entered and left a watched FIFO. Times may lie in the future.
+/// Record of the words that enter and leave a watched FIFO. Its times can lie in the future.
 #[derive(Debug, Default)]
 struct Watched {
-    /// Changes since the last [`InputFifo::take_changes`]: time, and words that entered (positive) or left (negative).
+    /// Changes of the FIFO's content since the last [`InputFifo::take_changes`]: a time, and the number of words that
+    /// enter (positive) or leave (negative).
     changes: Vec<(Time, i64)>,
     entered: Course,
     left: Course,
 }
 
-/// A growing sum over time, from the last call of `discard_before` on.
+/// A sum that only grows, as a function of time. It is recorded from the last call of `discard_before` on.
 #[derive(Debug, Default)]
 struct Course {
-    /// Value of the sum from each instant on, in order of time.
+    /// Times at which the sum grows, in ascending order, with the new sum.
     steps: VecDeque<(Time, u64)>,
-    /// Value before the first step.
+    /// The sum before the first entry of `steps`.
     before: u64,
     after: u64,
 }
@@ -191,12 +198,12 @@ impl Course {
     }
 }
 
-/// Number of words that have entered and left a FIFO since the start.
+/// Numbers of words that have entered and left a FIFO since the start of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WordsPassed {
-    /// Words of commands that have arrived completely.
+    /// Number of words in commands that have arrived completely.
     pub(crate) entered: u64,
-    /// Words of commands that have started.
+    /// Number of words in commands that have started.
     pub(crate) started: u64,
 }
 
@@ -221,21 +228,21 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands, in order, to the message that [`Self::message`] announces next.
+    /// Adds commands, in order, to the message that the next call of [`Self::message`] announces.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
 
-    /// Announces a message with the commands that were [taken](Self::take) since the last one.
+    /// Announces a message with all commands that were [added](Self::take) since the previous message.
     ///
-    /// The message's first word is on the channel at `begins`.
+    /// The first word of the message is on the channel at time `begins`.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
         self.transit_known = false;
         self.advance()
     }
 
-    /// Ends the blocking command.
+    /// Ends the running blocking command at time `now`.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.blocked += now.since(self.last_block.start);
@@ -243,25 +250,25 @@ impl InputFifo {
         self.advance()
     }
 
-    /// Returns the execution time so far, without blocking commands.
+    /// Returns the total execution time of all received commands, without blocking commands.
     pub(crate) const fn busy(&self) -> Span {
         self.busy
     }
 
-    /// Returns the execution time up to an instant that is not before the last event. What has been received and is executed later is taken
-    /// to be executed without a gap.
+    /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
+    /// event. Received commands that have not ended by `now` count as executed without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
     }
 
-    /// Returns the time up to an instant for which blocking commands have held the controller.
+    /// Returns the total time until `now` for which blocking commands have occupied the controller.
     pub(crate) fn blocked_at(&self, now: Time) -> Span {
         let goes_on = self.free_at.is_none().then(|| now.0.saturating_sub(self.last_block.start.0));
         self.blocked + Span(goes_on.unwrap_or(0))
     }
 
-    /// Returns the last blocking command; what came before it is known once it has started.
+    /// Returns the last blocking command. Its times are valid once it has started.
     pub(crate) const fn last_block(&self) -> Block {
         self.last_block
     }
@@ -270,14 +277,14 @@ impl InputFifo {
         self.watched.get_or_insert_default();
     }
 
-    /// Returns the words that have passed by `now`, which must not be before the last event. Returns `None` if the FIFO
-    /// is not watched.
+    /// Returns the numbers of words that have entered and left by `now`, or `None` if the FIFO is not watched. `now`
+    /// must not be before the last event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Drops the record of all times before `now`.
+    /// Drops the parts of the record that concern times before `now`.
     pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.discard_before(now);
@@ -285,7 +292,7 @@ impl InputFifo {
         }
     }
 
-    /// Returns the changes since the last call, in no order.
+    /// Returns the changes of the FIFO's content since the last call. They are not sorted by time.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
@@ -298,7 +305,7 @@ impl InputFifo {
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
         while let Some(work) = self.in_transit.pop_front() {
-            // Without a blocking command or a watcher, all equal commands are computed at once.
+            // Without a blocking command or an observer, all commands of the batch are computed at once.
             let words = work.words_each;
             let span = work.span_each;
             if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.watched)
@@ -309,7 +316,7 @@ impl InputFifo {
                 self.run_freely(work, free_at, span_each);
                 continue;
             }
-            // Otherwise words may have to wait, so each command is computed alone.
+            // Otherwise words can wait for room, so each command is computed alone.
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
                     self.in_transit.push_front(CommandBatch { count: work.count - entered, ..work });
@@ -332,18 +339,18 @@ impl InputFifo {
         progress
     }
 
-    /// Computes equal commands in closed form, with the results of [`InputFifo::arrival`] and [`InputFifo::start`] for
-    /// each.
+    /// Computes all commands of a batch at once. The results equal those of [`InputFifo::arrival`] and
+    /// [`InputFifo::start`], called for each command.
     ///
-    /// The FIFO is not watched. Each command fits in the FIFO, takes at least as long as its words on the channel, and
-    /// does not block. So each command after the first starts when the one before it ends. Its last word has arrived by
-    /// then: its first word got room at the latest when the command before it started.
+    /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
+    /// as the transfer of its words. Then each command after the first starts at the end of the previous command. Its
+    /// last word has arrived by then: its first word found room, at the latest, when the previous command started.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
         );
-        // The first command may wait for its words; each further one starts when the previous one ends.
+        // The first command may still wait for its words. Each other command starts when the previous one ends.
         let words = u64::from(work.words_each);
         let count = u64::from(work.count);
         let first = self.words_in;
@@ -354,7 +361,7 @@ impl InputFifo {
         self.note_wait(free_at, start);
         let made_room_for = first + self.depth;
         self.left.0.push_back(Departure { made_room_for, left_at: start, count, words_each: words, step: span });
-        // The last word enters when the commands before it have made room.
+        // The last word enters once earlier commands have freed enough room for it.
         self.last_word_at = if count == 1 {
             complete
         } else {
@@ -366,7 +373,7 @@ impl InputFifo {
         self.busy += span * count;
     }
 
-    /// Notes that the controller waited for commands, if it did.
+    /// Records an interval in which the controller waited for commands. Does nothing if the interval is empty.
     #[inline]
     fn note_wait(&mut self, from: Time, to: Time) {
         if to > from {
@@ -374,8 +381,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the next `words` words have all entered; `None` while the time depends on a blocking
-    /// command.
+    /// Returns the time at which the next `words` words have all entered. Returns `None` while this time depends on the
+    /// end of a blocking command.
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -386,8 +393,7 @@ impl InputFifo {
         (last - self.depth < self.words_left).then(|| self.left.entered(first, last, complete, self.word))
     }
 
-    /// Starts waiting commands while the controller is free. Returns the start time of a blocking command, if one
-    /// starts.
+    /// Starts the waiting commands until one blocks. Returns the start time of the blocking command, if there is one.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;
@@ -399,7 +405,8 @@ impl InputFifo {
         None
     }
 
-    /// Starts the last arrived command, or queues it while a blocking command runs.
+    /// Starts a command that has arrived completely, or queues it while a blocking command runs. Returns the start time
+    /// if the command blocks.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -410,10 +417,12 @@ impl InputFifo {
         }
     }
 
-    /// Starts a complete command when the controller is free. Returns the start time if the command blocks.
+    /// Starts a command that has arrived completely, at `free_at` or later. Returns the start time if the command
+    /// blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
-        // The words of a copy command arrive behind those of its selection; that is no wait for commands of the region.
+        // The words of a copy command arrive after those of its selection. This wait is not a wait for the commands of
+        // the region.
         if command.span.is_some() {
             self.note_wait(free_at, start);
         }
@@ -429,7 +438,7 @@ impl InputFifo {
             Some(span) => self.busy += span,
             None => {
                 let before = self.last_block;
-                // A copy command that came late was preceded by the selection of its region at most.
+                // If the copy command came late, at most the selection of its region ran since the wait.
                 let (idle_from, idle_to) = self.last_wait;
                 let is_late = idle_from >= before.resumed_at && free_at.0.saturating_sub(idle_to.0) <= SELECTION.0;
                 let finished_at = if is_late { idle_from.min(free_at) } else { free_at };
@@ -454,7 +463,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// Reference model of the rules: one word at a time.
+    /// Reference model of the rules, which handles one word at a time.
     struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,

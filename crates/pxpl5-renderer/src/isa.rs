@@ -1,10 +1,10 @@
 //! The instruction set of the renderer's controller.
 //!
-//! No list of the machine's instructions is public. Published are the ingredients (F89, TR94, LK): bit-serial
-//! instructions that arrive in ring messages, an Enable register that masks pixels, a tree that evaluates linear and
-//! quadratic expressions for all pixels at once, 208 bits of pixel memory, and a backing store that moves 32-bit blocks
-//! in the background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs
-//! the published program of a triangle and the shading at the end of a frame.
+//! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
+//! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
+//! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
+//! background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs the
+//! published program of a triangle and the shading at the end of a frame.
 //!
 //! # Words
 //!
@@ -41,9 +41,9 @@
 //! | 62 | wait | 1 | 2 | until the backing store is idle |
 //! | 70 | output | 9 | 2, then in the background | the region's colour field goes to a frame buffer |
 //!
-//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). *n* is
-//! 0 if bit 7 of the modifier says *again*: the evaluator repeats its latched coefficients. *s* is in bits 5..0 of the
-//! modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
+//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). If bit
+//! 7 of the modifier (*again*) is set, *n* is 0, and the evaluator reuses its last coefficients of this kind. *s* is in
+//! bits 5..0 of the modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
 //!
 //! # Rules
 //!
@@ -68,13 +68,13 @@ pub use operand::Operand;
 
 use pxpl5_wire::{CopyTarget, Linear, Quadratic};
 
-/// Bits of memory of each pixel (F89, TR94).
+/// Number of bits of memory of each pixel (F89, TR94).
 pub const MEMORY_BITS: u32 = 208;
 
-/// Bits of a linear expression's value. Assumed: one word per coefficient.
+/// Width in bits of a linear expression's value. Assumed: one word for each coefficient.
 pub const LINEAR_BITS: u32 = 32;
 
-/// Bits of a quadratic expression's value. Assumed: 16 fraction bits and spheres up to 2^15 pixels.
+/// Width in bits of a quadratic expression's value. Assumed: 16 fraction bits, and spheres of up to 2^15 pixels.
 pub const QUADRATIC_BITS: u32 = 48;
 
 /// Number of 32-bit blocks of each pixel in the backing store: 4,096 bits per pixel (F89).
@@ -87,14 +87,14 @@ pub enum Expression {
     Linear(Linear),
     /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// The last linear expression, whose coefficients the evaluator has latched.
+    /// Repetition of the most recent linear expression, whose coefficients the evaluator has kept.
     LinearAgain,
-    /// The last quadratic expression, whose coefficients the evaluator has latched.
+    /// Repetition of the most recent quadratic expression, whose coefficients the evaluator has kept.
     QuadraticAgain,
 }
 
 impl Expression {
-    /// Returns the number of bits in which the expression is evaluated.
+    /// Returns the number of bits of the expression's value.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {
@@ -110,37 +110,38 @@ impl Expression {
     }
 }
 
-/// The use that pixels make of the bits of an expression.
+/// The operation that pixels perform with the bits of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpressionUse {
     /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores bits `shift ..` of the expression in a field.
+    /// Stores the bits of the expression from bit `shift` on in a field.
     Load {
         /// Field that receives the bits.
         field: Operand,
-        /// Number of low bits of the expression to leave out.
+        /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Adds bits `shift ..` of the expression to a field.
+    /// Adds the bits of the expression from bit `shift` on to a field.
     Add {
         /// Field to which the bits are added.
         field: Operand,
-        /// Number of low bits of the expression to leave out.
+        /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Disables pixels unless bits `shift ..` of the expression are less than the field, unsigned.
+    /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both are
+    /// unsigned.
     DisableNotLess {
-        /// Field to compare with.
+        /// Field with which the bits are compared.
         field: Operand,
-        /// Number of low bits of the expression to leave out.
+        /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Stores bits `shift ..` of the expression minus `subtrahend << left_shift` in a field.
+    /// Stores the bits from bit `shift` on of the difference: expression minus `subtrahend << left_shift`.
     LoadMinus {
         /// Field that receives the bits.
         field: Operand,
-        /// Number of low bits of the difference to leave out.
+        /// Number of low bits of the difference that are left out.
         shift: u8,
         /// Field to subtract, extended by its sign if it is signed, otherwise by zeros.
         subtrahend: Operand,
@@ -149,7 +150,7 @@ pub enum ExpressionUse {
     },
 }
 
-/// Operations on two fields a and b.
+/// An operation on two fields a and b of pixel memory, with a result of w bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticOp {
     /// a + b, modulo 2^w.
@@ -158,7 +159,7 @@ pub enum ArithmeticOp {
     Subtract,
     /// a * b, modulo 2^w. No operand may overlap the result.
     Multiply,
-    /// a / b. The remainder stays in a.
+    /// a / b, rounded down. The remainder replaces a.
     Divide,
     /// Bitwise a AND b.
     And,
@@ -172,7 +173,7 @@ pub enum ArithmeticOp {
     Maximum,
 }
 
-/// A comparison of a with b that disables the pixels for which it is false.
+/// A comparison of a with b. Pixels for which the comparison is false are disabled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Test {
     /// True if a < b.
@@ -190,7 +191,7 @@ pub enum Test {
 pub enum ArrayInstruction {
     /// Enables every pixel: E := 1.
     EnableAll {
-        /// A number that the array ignores. Commands put their kind here.
+        /// A number that the array ignores. In a command, it is the opcode of the command's kind.
         label: u8,
     },
     /// Disables every pixel: E := 0.
@@ -205,7 +206,7 @@ pub enum ArrayInstruction {
     EnableAnd(Operand),
     /// Selects the context and the region for the following instructions.
     Select {
-        /// Base address that is added to relative operands, in bits.
+        /// First bit of the context in pixel memory. It is added to the addresses of relative operands.
         context_base: u8,
         /// Screen x of the array's left column.
         left: u16,
@@ -214,12 +215,12 @@ pub enum ArrayInstruction {
     },
     /// Evaluates an expression in all pixels.
     Evaluate {
-        /// Expression to evaluate, with new or latched coefficients.
+        /// Expression to evaluate, with new coefficients or with those of an earlier expression.
         expression: Expression,
-        /// Use of the bits in each enabled pixel.
+        /// Operation that each pixel performs with the bits.
         usage: ExpressionUse,
     },
-    /// Computes destination := source >> by. A shift by 0 is a copy.
+    /// Computes destination := source >> by. A shift by 0 copies the source.
     ShiftRight {
         /// Field that receives the result.
         destination: Operand,
@@ -244,7 +245,7 @@ pub enum ArrayInstruction {
         /// Field to read, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
     },
-    /// Computes destination := floor(sqrt(radicand)), and leaves the remainder in the radicand.
+    /// Computes destination := floor(sqrt(radicand)). The remainder replaces the radicand.
     SquareRoot {
         /// Field that receives the root, 1 to 32 bits.
         destination: Operand,
@@ -261,7 +262,7 @@ pub enum ArrayInstruction {
         /// Second operand, extended by its sign if it is signed, otherwise by zeros.
         b: Operand,
     },
-    /// Disables pixels for which the test of two fields is false.
+    /// Compares two fields, and disables the pixels for which the comparison is false.
     Compare {
         /// Comparison that must be true for a pixel to stay enabled.
         test: Test,
@@ -270,17 +271,18 @@ pub enum ArrayInstruction {
         /// Second operand, extended by its sign if it is signed, otherwise by zeros.
         b: Operand,
     },
-    /// Disables pixels for which the test of a field and a constant is false. The constant has the field's width and
-    /// signedness.
+    /// Compares a field with a constant, and disables the pixels for which the comparison is false. The constant has
+    /// the width and signedness of the field.
     CompareConstant {
         /// Comparison that must be true for a pixel to stay enabled.
         test: Test,
         a: Operand,
-        /// Constant, of which a narrow field uses the low bits. For a field of more than 32 bits it is extended by the
-        /// field's signedness.
+        /// Constant. A field of less than 32 bits uses its low bits. For a field of more than 32 bits, the constant is
+        /// extended by its sign if the field is signed, otherwise by zeros.
         value: u32,
     },
-    /// Computes destination := value, extended by zeros, or by the sign if the destination is signed.
+    /// Computes destination := value. A wide destination extends the value by its sign if the destination is signed,
+    /// otherwise by zeros.
     LoadConstant {
         /// Field that receives the constant.
         destination: Operand,
@@ -293,28 +295,28 @@ pub enum ArrayInstruction {
         destination: Operand,
         /// Field to multiply, extended by its sign if it is signed, otherwise by zeros.
         source: Operand,
-        /// Factor in two's complement; the low `factor_bits` bits are used.
+        /// Factor in two's complement, of which the low `factor_bits` bits are used.
         factor: i32,
         /// Number of bits of the factor, including its sign.
         factor_bits: u8,
     },
-    /// Stores 32 bits of every pixel in a block of the backing store, in the background.
+    /// Stores 32 bits of every pixel in a block of the backing store. The array continues during the transfer.
     StoreBlock {
         /// Field of 32 bits of pixel memory.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
-    /// Loads 32 bits of every pixel from a block of the backing store, in the background.
+    /// Loads 32 bits of every pixel from a block of the backing store. The array continues during the transfer.
     LoadBlock {
         /// Field of 32 bits of pixel memory.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
-    /// Waits until the backing store is idle.
+    /// Waits until all transfers of the backing store have ended.
     Wait,
-    /// Sends a field of 24 bits of the region's pixels to a frame buffer.
+    /// Sends a field of 24 bits, from each pixel of the region, to a frame buffer.
     Output {
         /// Field of the colour, 24 bits.
         field: Operand,

@@ -8,31 +8,31 @@ use std::fmt;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// A pool of unused pixel arrays. A thread that computes pixels borrows one.
+/// A pool of pixel arrays. A thread borrows one array while it computes pixels.
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Cached pixels of regions without primitives, by size and words.
+    /// Cached pixels of regions without primitives. The key is the size of the region and its command words.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// Working memory of a thread that computes pixels.
+/// Working memory of one thread that computes pixels.
 struct ArrayAndWords {
     array: Lanes,
-    /// Reused buffer for the words of a list.
+    /// Buffer for the words of command lists. It is reused to avoid allocations.
     words: Vec<Word>,
 }
 
 /// Cache key of a region without primitives: everything that its pixels depend on.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
-    /// All commands except the copy commands.
+    /// Words of all commands of the region except copy commands.
     words: Vec<Word>,
     cleared: bool,
     size: [u32; 2],
 }
 
-/// Capacity of the cache of regions without primitives: six stereo frames of 40 regions, 16 MB.
+/// Largest number of cached regions without primitives: six stereo frames of 40 regions, 16 MB.
 const EMPTY_REGIONS: usize = 256;
 
 impl fmt::Debug for ArrayPool {
@@ -42,7 +42,7 @@ impl fmt::Debug for ArrayPool {
 }
 
 impl ArrayPool {
-    /// Creates a pool of arrays with this memory layout.
+    /// Creates a pool. Its arrays have this layout of pixel memory.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
@@ -60,7 +60,7 @@ impl ArrayPool {
         result
     }
 
-    /// Returns the pixels of a region without primitives, from the cache if the same region was drawn before.
+    /// Returns the pixels of a region without primitives. They come from the cache if the same region was drawn before.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
         if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
@@ -79,18 +79,19 @@ impl ArrayPool {
     }
 }
 
-/// A pending computation of a region's pixels: all lists sent to a region context since it was cleared.
+/// A pending computation of a region's pixels, with all command lists sent to a region context since it was cleared.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first list overwrites the whole content of the array.
+    /// True if the first list overwrites the array's whole content.
     pub(crate) cleared: bool,
-    /// True if commands that touch no pixel are left out and regions without primitives are cached.
+    /// True if two optimizations are on: commands that touch no pixel are left out, and regions without primitives are
+    /// cached.
     pub(crate) saves: bool,
     /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,
-    /// Parts of each pixel to send: colour, or colour and depth.
+    /// Content of each pixel to send: colour, or colour and depth.
     pub(crate) content: CopyContent,
     pub(crate) done: OnceLock<Arc<[Word]>>,
 }
@@ -111,9 +112,9 @@ impl PixelJob {
         })
     }
 
-    /// Returns the cache key for these commands, none of which draws a primitive.
+    /// Returns the cache key of a region whose commands are `words`. None of these commands draws a primitive.
     ///
-    /// Returns `None` if some words are no command or if depths are copied.
+    /// Returns `None` if some words are no command, or if depths are copied too.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
         let mut kept = Vec::new();
         let mut at = 0;
@@ -128,7 +129,7 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Returns the columns and rows of the region, which may be fewer than the array's.
+    /// Returns the number of columns and rows of the region. Each can be less than the array's 128.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
@@ -136,12 +137,12 @@ impl PixelJob {
 
     /// Executes `words` and then the remaining lists, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
-        // Without a clear, the region shows black where nothing is drawn.
+        // If the context was not cleared, the region is black where nothing is drawn.
         if !self.cleared {
             array.reset();
         }
         let mut copied = self.execute(array, words);
-        // Only a copy in the last list counts.
+        // Only a copy command in the last list counts.
         for list in lists {
             copied = if self.saves {
                 self.copied(array.draw(list, words))
@@ -151,14 +152,14 @@ impl PixelJob {
                 self.execute(array, words)
             };
         }
-        // Without a copy in the last list, read the colour directly.
+        // If the last list contains no copy command, read the colour directly.
         let [width, height] = self.size();
         let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
         self.content.of(colours, || self.depths(array))
     }
 
-    /// Executes words, and returns the last output to this job's target. A fault stops the list, as on the hardware;
-    /// earlier drawing stays.
+    /// Executes words, and returns the pixels of the last output to this job's target. A fault ends the list, as on the
+    /// hardware. Pixels drawn before the fault stay.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -167,9 +168,10 @@ impl PixelJob {
         outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
-    /// Returns the depths of the region's pixels in 24 bits, 0 at the near plane.
+    /// Returns the depths of the region's pixels in 24 bits; 0 is the near plane.
     ///
-    /// A layout with a narrower Z lacks low bits. They become 1 at the far plane and 0 elsewhere.
+    /// A layout with a narrower Z does not store the low bits of the depth. They are set to 1 at the far plane and to 0
+    /// elsewhere.
     fn depths(&self, array: &Lanes) -> Vec<Word> {
         let [width, height] = self.size();
         let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);
@@ -188,7 +190,7 @@ impl PixelSource for PixelJob {
 /// The farthest depth in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
-/// Source of a copied region's pixels while pixels are off: zeros only.
+/// Pixels of a copied region while pixel computation is off. All are zero.
 #[derive(Debug)]
 pub(crate) struct NoPixels {
     pub(crate) words: u32,
@@ -221,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Returns the pixels of a region that is cleared with a colour for a picture.
+    /// Returns the pixels of a region for picture number `picture`, cleared with a colour.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

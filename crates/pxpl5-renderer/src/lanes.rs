@@ -1,4 +1,5 @@
-//! Fast pixel array that holds values instead of bits. Its results equal [`crate::BitSerial`] bit for bit.
+//! Fast pixel array that computes with whole numbers instead of single bits. Its results equal [`crate::BitSerial`] bit
+//! for bit.
 
 mod bounds;
 mod columns;
@@ -28,10 +29,10 @@ use pxpl5_wire::{CommandContent, CommandSink, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
-/// Pixel array that keeps one word for each pixel and field.
+/// Pixel array that keeps one word for each field of each pixel.
 ///
-/// The array recognizes whole commands of its layout and touches only the pixels that they can change. Any other
-/// instruction works on all pixels, field by field.
+/// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. It
+/// executes any other instruction on all pixels, one field after the other.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
@@ -39,7 +40,7 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Columns of the context that was used last.
+    /// Columns of the most recently used context; `None` if no context has been used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -48,7 +49,7 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array of zeros whose fast path serves the commands of `layout`.
+    /// Creates an array of zeros. Its fast path executes the commands of `layout`.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
@@ -104,21 +105,21 @@ impl Lanes {
 }
 
 impl Lanes {
-    /// Returns the depth of the selected context, row by row, of the left top `width` x `height` pixels.
+    /// Returns the depths of the selected context's upper left `width` x `height` pixels, row by row.
     ///
-    /// The depth has as many bits as the layout's Z.
+    /// A depth has as many bits as the layout's field Z.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
         let depth = self.controller.bits(self.layout.plan().z);
         depth.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
     }
 }
 
-/// State while a list is being drawn.
+/// State of the array while it draws a command list.
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Words that have not been executed yet.
+    /// Collected words that have not been executed yet.
     words: &'a mut Vec<Word>,
-    /// Regions copied so far, or the fault after which no command is drawn.
+    /// Regions copied so far. After a fault, this field holds the fault, and no further command is drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 
@@ -142,13 +143,13 @@ impl CommandSink for Drawing<'_> {
     }
 
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool {
-        // Execute the pending words first, to keep the order of the commands.
+        // Execute the collected words first, to keep the order of the commands.
         self.execute();
         self.outputs.is_err() || self.array.batch(batch).is_some()
     }
 }
 
-/// Returns the left top `width` x `height` pixels of all pixels.
+/// Returns the upper left `width` x `height` pixels of the array.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
     let width = WIDTH.min(width as usize);
@@ -248,7 +249,7 @@ mod tests {
         assert_eq!(executed.clocks, u64::from(clocks));
     }
 
-    /// Eight triangles of random coefficients, with commands before and after them.
+    /// Eight random triangles, with commands before and after them.
     #[derive(Debug)]
     struct SomeTriangles {
         layout: Layout,
@@ -280,7 +281,7 @@ mod tests {
             }
         }
 
-        /// Creates triangles that are a few columns wide and as many or more rows high, also across the region's
+        /// Creates triangles that are a few columns wide and at least as many rows high. They can cross the region's
         /// borders.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
@@ -340,8 +341,8 @@ mod tests {
         }
     }
 
-    /// Draws triangles both as words and as a batch on all vector units, compares them, and returns the number of
-    /// covered pixels.
+    /// Draws the same triangles as words and as a batch, on all vector units, and compares the results. Returns the
+    /// number of covered pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

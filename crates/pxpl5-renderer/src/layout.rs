@@ -5,10 +5,11 @@ use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory that has not been checked yet.
+/// A division of pixel memory into fields, not checked yet.
 ///
-/// Fields of a context are relative to its base; context `i` begins at bit `i * context_bits`. Scratch is absolute and
-/// shared by all contexts. Sharing is safe, since no command leaves data in the scratch.
+/// Addresses of a context's fields are relative to the context's first bit, which is bit `i * context_bits` for context
+/// `i`. The address of the scratch is absolute, and all contexts share this field. Sharing is safe, since no command
+/// leaves data in the scratch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.
@@ -19,9 +20,10 @@ pub struct ContextPlan {
     pub context_bits: u8,
     /// Field of the colour: 24 bits, 0xRRGGBB.
     pub colour: Operand,
-    /// Field of the depth, 8 to 24 bits; nearer is smaller.
+    /// Field of the depth, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
-    /// Field of the normal: x, y and z of 12 bits each, two's complement, in this order. `None` without Phong shading.
+    /// Field of the normal: x, y and z in this order, 12 bits each, two's complement. `None` if the layout does not
+    /// support Phong shading.
     pub normal: Option<Operand>,
     /// Field for temporary values of spheres and shading.
     pub scratch: Option<Operand>,
@@ -35,12 +37,12 @@ pub struct Layout(ContextPlan);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
-    /// Fields lie outside pixel memory or overlap. The error text draws them.
+    /// Fields overlap or extend beyond pixel memory. The error text draws their bit ranges.
     #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
-        /// Name of the plan, from [`ContextPlan::name`].
+        /// Name of the rejected layout, from [`ContextPlan::name`].
         name: &'static str,
-        /// Drawing of the fields, one line for each.
+        /// Text drawing of the fields, one line for each field.
         drawing: String,
     },
     /// A field has a width that the commands do not support.
@@ -55,7 +57,8 @@ pub enum LayoutError {
     },
 }
 
-/// Rendering Control with Phong shading: one region, 24 colour + 24 Z + 36 normal, and 124 bits of scratch.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
+/// bits of scratch.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -66,7 +69,7 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Slats: four regions of 24 colour + 20 Z, and 32 bits of common scratch.
+/// Layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common scratch.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -77,7 +80,8 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Slats with equal parts: four regions of 24 colour + 24 Z + 4 unused bits, and no scratch.
+/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, and no
+/// scratch.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -97,18 +101,19 @@ impl Layout {
         Self(RENDERING_CONTROL_PHONG)
     }
 
-    /// Returns the layout of Slats: four regions of 24 bits of colour and 20 of Z, and 32 bits of common scratch.
+    /// Returns the layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common
+    /// scratch.
     ///
-    /// Four contexts in 208 bits are published (TR94). Four equal parts of 52 bits would leave no room for the scratch
-    /// of a sphere (30 bits). Every context needs the scratch only while a command runs, so Z is reduced by 4 bits
-    /// (assumed).
+    /// TR94 publishes four contexts in 208 bits. Four equal parts of 52 bits would leave no room for the scratch of a
+    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share it. To make
+    /// room, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Returns the layout of Slats with four equal parts of 52 bits: 24 colour + 24 Z + 4 unused. It supports triangles
-    /// only.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. It
+    /// supports triangles, but no spheres.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
@@ -117,7 +122,7 @@ impl Layout {
     /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// [`LayoutError::DoesNotFit`] if fields overlap or exceed pixel memory; it draws the bit ranges.
+    /// [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory; its text draws the bit ranges.
     /// [`LayoutError::Width`] if a field has a wrong width.
     pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
         check_widths(&plan)?;
@@ -129,13 +134,13 @@ impl Layout {
         Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
     }
 
-    /// Returns the fields of the layout.
+    /// Returns the unchecked plan with the fields of the layout.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0
     }
 
-    /// Returns the first bit of a context in pixel memory.
+    /// Returns the first bit of context `context` in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
@@ -160,8 +165,8 @@ impl Layout {
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the bits of a sphere's root: 12, or 10 if the scratch has 30 to 35 bits. Returns `None` for less
-    /// scratch.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch has only 30 to 35 bits. Returns
+    /// `None` if the scratch is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -171,17 +176,17 @@ impl Layout {
         }
     }
 
-    /// Returns the bit ranges of all fields, in order of the plan.
+    /// Returns the bit ranges of all fields, in the order of the plan.
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
     }
 }
 
-/// A named range of pixel memory.
+/// A named range of bits in pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Number of the context and name of the field, or *scratch*.
+    /// Index of the context and name of the field, or *scratch*.
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
@@ -201,7 +206,7 @@ fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks a field's width; `expected` is the text of `allowed` for the error.
+/// Checks a field's width against `allowed`. `expected` is the text of the allowed widths for the error.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -235,7 +240,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns the error text of each range, or `None` for a range without error.
+/// Returns one entry for each range: the text of its error, or `None` if it has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -246,7 +251,7 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a range that overlaps an earlier range or ends beyond pixel memory.
+/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory; otherwise `None`.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
@@ -259,7 +264,7 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Draws one line for each field: range, a bar of one mark per four bits, name, conflict.
+/// Draws one line for each field: bit range, a bar with one character per four bits, name, and error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {

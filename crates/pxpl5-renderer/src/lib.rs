@@ -38,10 +38,10 @@
 //!
 //! - The real instruction set, which is lost. The model's instruction set is the smallest one that runs the published
 //!   programs, and is **assumed**.
-//! - The split of the array into 64 chips, and the fill of the evaluator's pipeline beyond a constant for each
-//!   instruction.
-//! - The state of a block of the backing store during its transfer. The array moves the block at once; only the time
-//!   passes later.
+//! - The split of the array into 64 chips. The filling of the evaluator's pipeline, except for a constant number of
+//!   clocks for each instruction.
+//! - The state of a block of the backing store during its transfer. The array moves the whole block at the start of the
+//!   transfer. Only the busy time of the backing store follows later.
 //! - Antialiasing, texture, transparency.
 //!
 //! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK

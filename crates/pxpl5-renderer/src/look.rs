@@ -1,4 +1,4 @@
-//! Snapshots of a renderer while it works.
+//! Snapshots of a renderer during a run.
 
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
 use crate::{Lanes, Layout, PixelArray};
@@ -9,37 +9,38 @@ use std::collections::VecDeque;
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
-    /// Words of complete commands that wait in the input FIFO; `None` if the FIFO is not watched.
+    /// Number of words in the input FIFO, counting complete commands only. `None` if the FIFO is not watched.
     pub fifo_words: Option<u32>,
     /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
     /// True while the controller executes a copy command.
     pub stands_at_copy: bool,
-    /// The region in transfer to a display.
+    /// The copy whose region is on its way to a frame buffer, if there is one.
     pub copying: Option<CopyOrder>,
-    /// Number of regions in the backing store or on the way into it.
+    /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,
-    /// Time spent executing commands since the start, without copies. Received commands count immediately.
+    /// Time spent executing commands since the start of the run, without copies. A received command counts at once,
+    /// even before it is executed.
     pub busy: Span,
 }
 
-/// Lists of commands whose effects are or will be visible in pixel memory.
+/// Received command lists whose effects are visible in pixel memory, or will be.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
 #[derive(Debug)]
 struct SentList {
     context: usize,
-    /// Number of words that were sent before this list, since the start.
+    /// Number of words that were sent before this list, since the start of the run.
     first_word: u64,
-    /// Position of the clear at the beginning of the list, in words since the start; `None` if the list begins
-    /// otherwise.
+    /// Index of the first word of the clear at the beginning of the list, counted since the start of the run. `None` if
+    /// the list does not begin with a clear.
     clear: Option<u64>,
     content: CommandContent,
 }
 
 impl SentLists {
-    /// Adds the list of a received message. `started` is the number of words whose commands have started.
+    /// Adds the list of a received message. `started` is the number of words in commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
         let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) else { return };
@@ -49,13 +50,14 @@ impl SentLists {
         self.0.push_back(SentList { context, first_word, clear, content });
     }
 
-    /// Drops the lists whose drawing a started clear has erased.
+    /// Drops the lists whose pixels have been erased by a clear that has started.
     fn forget(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the first word of the last list whose clear of a context has started; 0 if there is none.
+    /// Returns the index of the first word of the last list in a context whose clear has started. Returns 0 if there is
+    /// none.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context
@@ -65,7 +67,8 @@ impl SentLists {
             .unwrap_or(0)
     }
 
-    /// Returns the array after the commands in the first `started` words; `None` if none of them changed a pixel.
+    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if none of them changed
+    /// a pixel.
     pub(crate) fn executed(&self, started: u64, layout: &Layout) -> Option<Lanes> {
         let mut lists = self.0.iter().filter(|list| list.first_word < started).peekable();
         lists.peek()?;
@@ -75,7 +78,7 @@ impl SentLists {
             list.content.append_words(&mut words);
             let executed = usize::try_from(started - list.first_word).unwrap_or(usize::MAX);
             words.truncate(executed);
-            // A fault stops the list, as on the hardware; what was drawn before stays.
+            // A fault ends the list, as on the hardware. Pixels drawn before the fault stay.
             let _ = array.execute(&words);
         }
         Some(array)

@@ -1,8 +1,9 @@
 //! Choice of the vector unit at run time.
 //!
-//! All `unsafe` code of this crate is here, in `simd/x86.rs` and in `simd/wasm.rs`. It calls functions compiled for a
-//! vector unit after checking that the processor has the unit. WebAssembly chooses at compile time for a whole module.
-//! The gain is measured by the bench groups `lanes/Portable` and `lanes/Avx2` of `cargo bench -p pxpl5-renderer`.
+//! All `unsafe` code of this crate is in this file, in `simd/x86.rs` and in `simd/wasm.rs`. The code first checks that
+//! the processor has a vector unit, then calls functions that are compiled for this unit. WebAssembly has one vector
+//! unit for a whole module, chosen at compile time. The bench groups `lanes/Portable` and `lanes/Avx2` of `cargo bench
+//! -p pxpl5-renderer` measure the gain.
 #![allow(unsafe_code)] // The compiler cannot know what the processor has.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -13,16 +14,16 @@ mod x86;
 use pxpl5_wire::REGION_SIZE;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Number of words from a pixel to the pixel below it.
+/// Distance in memory, in words, from a pixel to the pixel below it.
 const ROW: usize = REGION_SIZE as usize;
 
-/// Group size of a vector of fours: four pixels lie side by side, the next four below them.
+/// Number of adjacent pixels in each group of a vector that covers several rows. The next group lies one row below.
 pub(crate) const FOUR: usize = 4;
 
-/// The best unit that arrays may choose, as its index in [`Vectors`].
+/// The best vector unit that pixel arrays may choose, as its index in [`Vectors`].
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 
-/// The vector units that a kernel is compiled for. All give the same bits.
+/// A vector unit for which kernels are compiled. All units give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
@@ -37,10 +38,10 @@ pub enum Vectors {
 }
 
 impl Vectors {
-    /// All units, the best last. Each is at the index of its discriminant.
+    /// All units, from the worst to the best. The discriminant of a unit is its index.
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
-    /// Returns all units that this processor has, the best last.
+    /// Returns all units that this processor has, from the worst to the best.
     #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
@@ -53,9 +54,10 @@ impl Vectors {
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Limits the units that new pixel arrays of this process choose by themselves.
+    /// Limits the units that new pixel arrays of this process choose without an explicit request.
     ///
-    /// Tests run whole experiments on each unit this way (`tests/hashes.rs`). Existing arrays keep their unit.
+    /// The tests in `tests/hashes.rs` use the limit to run whole experiments on each unit. Existing arrays keep their
+    /// units.
     pub fn at_most(self) {
         MOST.store(self as u8, Ordering::Relaxed);
     }
@@ -87,12 +89,12 @@ impl Vectors {
 pub(crate) struct PresentVectors(Vectors);
 
 impl PresentVectors {
-    /// Returns `wanted` if the processor has it, otherwise the portable unit.
+    /// Returns `wanted` if the processor has this unit, otherwise the portable unit.
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the kernel that is compiled for this unit.
+    /// Runs the version of the kernel that is compiled for this unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
@@ -109,7 +111,8 @@ impl PresentVectors {
     }
 }
 
-/// A loop to vectorize. `run` must be `#[inline(always)]`, or it is compiled without the unit's features.
+/// A loop to vectorize. Its `run` must be `#[inline(always)]`. Otherwise the compiler does not use the unit's
+/// instructions in it.
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
@@ -127,31 +130,32 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx512>()
 }
 
-/// A vector of 32-bit integers. Compilers vectorize plain loops, but not short ones.
+/// A vector of 32-bit integers. Kernels use it because compilers do not vectorize short loops.
 pub(crate) trait SimdVector: Copy {
-    /// Number of integers in a vector; 128 is a multiple of it.
+    /// Number of integers in a vector. It divides 128.
     const LANES: usize;
     /// One truth value for each lane.
     type Mask: Copy;
 
     fn splat(value: i32) -> Self;
-    /// Returns first, first + step, first + 2 step and so on, with wrap-around.
+    /// Returns the numbers first, first + step, first + 2 step and so on, modulo 2^32.
     fn ramp(first: i32, step: i32) -> Self;
-    /// Returns a ramp in groups of [four](FOUR) lanes; each group begins `down` higher than the previous one.
+    /// Returns the numbers of [`Self::ramp`] in groups of [four](FOUR) lanes. Each group begins `down` higher than the
+    /// previous group.
     fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self;
-    /// Loads the first lanes of `from`, which must be long enough.
+    /// Loads the first integers of `from`, one for each lane. `from` must be long enough.
     fn load(from: &[u32]) -> Self;
-    /// Loads groups of [four](FOUR) pixels from the starts of consecutive rows of pixels.
+    /// Loads groups of [four](FOUR) pixels, one group from the start of each row. `from` begins at the first row.
     fn load_fours(from: &[u32]) -> Self;
     /// Loads words of two lanes each, the low half first.
     fn load_words(from: &[u64]) -> Self;
     /// Stores as many words as [`SimdVector::load_words`] reads.
     fn store_words(self, to: &mut [u64]);
-    /// Sets all bits of lane i to bit i of `bits`.
+    /// Sets lane i to all ones if bit i of `bits` is set, else to zero.
     fn spread(bits: u64) -> Self;
-    /// Sets all bits of each lane to the lane's bit `t`, 0 to 31.
+    /// Sets each lane to all ones if bit `t` (0 to 31) of this lane is set, else to zero.
     fn bit(self, t: u32) -> Self;
-    /// Returns the signs: bit i is the sign of lane i.
+    /// Returns the sign bits of all lanes: bit i is the sign of lane i.
     fn signs(self) -> u32;
     fn add(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
@@ -161,23 +165,25 @@ pub(crate) trait SimdVector: Copy {
     fn shift_right(self, by: u32) -> Self;
     /// Shifts each lane left and fills it with zeros. A shift by 32 or more gives 0.
     fn shift_left(self, by: u32) -> Self;
-    /// Returns the lanes where self >= 0 and `new` < `old`, signed.
+    /// Returns true for the lanes where self >= 0 and `new` < `old`. All numbers are signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
     /// Returns true if any lane of either mask is true.
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
-    /// Overwrites the lanes of `to` where the mask is true; `old` is the content of `to`.
+    /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be the current content of `to`.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Overwrites, where the mask is true, the pixels that [`SimdVector::load_fours`] reads; `old` is their content.
+    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, where the mask is true. `old` must be their current
+    /// content.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Stores 255 where the mask is true, else 0.
+    /// Stores one byte for each lane: 255 where the mask is true, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
-/// Eight numbers in an array, for processors without a supported vector unit.
+/// Eight integers in an array, for processors without a supported vector unit.
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// For each number of four bits, the four lanes that hold its bits. Processors without AVX2 have no per-lane shifts.
+/// For each number of four bits, four lanes that are all ones where the number's bit is set. Without AVX2, processors
+/// cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
     let mut bits = 0;
@@ -287,7 +293,7 @@ impl SimdVector for PortableVector {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // The processor's own shift takes the count modulo 32; the shift of a vector unit does not.
+        // The processor's scalar shift takes the count modulo 32; the shift of a vector unit does not.
         if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
     }
 
@@ -372,7 +378,7 @@ mod tests {
     /// Results of a unit's operations by name, and its number of lanes.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
-    /// A kernel that applies every operation to numbers for all lanes, and to rows of pixels.
+    /// A kernel that applies every operation to integers in all lanes, and to rows of pixels.
     struct Everything {
         a: [u32; 16],
         b: [u32; 16],
@@ -432,7 +438,7 @@ mod tests {
     }
 
     impl Everything {
-        /// Computes the expected results number by number.
+        /// Computes the expected results, one integer at a time.
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };

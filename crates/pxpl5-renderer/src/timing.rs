@@ -1,35 +1,35 @@
-//! All numbers of the renderer board.
+//! All numbers of the renderer board: times, rates and sizes.
 //!
-//! Clocks of commands are the clocks of their programs in the layout of Rendering Control ([`CommandKind::clocks`]). A
-//! test checks that both are equal. The table lists them so that experiments can change them.
+//! The clocks of a command are those of its program in the layout of Rendering Control ([`CommandKind::clocks`]). A
+//! test checks that they are equal. The table lists them separately, so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
 
 parameters::parameter_table! {
-    /// Times and sizes of a renderer.
+    /// Times and sizes of a renderer board.
     pub struct RendererTiming {
         /// Clock rate of the controller and the array.
         clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000 in 1_000..=MAX, "F89, TR94";
-        /// Time of a triangle with interpolated colour, in each region that it is sent to.
+        /// Execution time of a triangle with interpolated colour, in each region to which it is sent.
         triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks";
-        /// Time of a triangle with normals instead of colours.
+        /// Execution time of a triangle with interpolated normals, in each region to which it is sent.
         phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks, and a count of bits gives 262 to 292";
-        /// Time of a sphere with interpolated colour. In the layout of Slats the program takes 748 clocks.
+        /// Execution time of a sphere with interpolated colour. In the layout of Slats, its program takes 748 clocks.
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
-        /// Time of a sphere with normals.
+        /// Execution time of a sphere with normals.
         phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";
-        /// Time to select a region context and its origin.
+        /// Execution time of the command that selects a region context and the region's origin.
         select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
-        /// Time to store the background colour and the farthest depth in all pixels.
+        /// Execution time of the command that stores the background colour and the farthest depth in all pixels.
         clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock for each bit of colour and depth, and the fetches";
-        /// Time of the deferred shading of a region at the end of the frame.
+        /// Execution time of the command that shades a region at the end of the frame.
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program with one light takes 95 us";
         /// Time to move one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
-        /// Backing store of each pixel, in bits.
+        /// Size of the backing store of each pixel, in bits.
         backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
-        /// Bits per pixel of the backing store that a finished region occupies until it is copied.
+        /// Number of bits of each pixel's backing store that a finished region occupies until it is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "24 bits of colour, moved in blocks of 32 bits (F89); 256 if all 208 bits of a pixel were kept";
         /// Capacity of the input FIFO in words.
         fifo_words: 448, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives the value. The range comes from FIFO chips of 9 bits that were sold from 1988 to 1990. A port of 32 bits needs four chips, and these chips had 256, 512, 1,024 or 2,048 words (recollected). An earlier model with one kept region fitted 448 words to the 56.5 ms of a trivial scene (TR94). The value no longer affects this figure";
@@ -52,8 +52,8 @@ impl RendererTiming {
         }
     }
 
-    /// Returns the execution time of one command. Returns `None` for a region copy, which ends when the frame buffer
-    /// has the region.
+    /// Returns the execution time of one command. Returns `None` for the copy of a region. Its end depends on the frame
+    /// buffer, which must receive the region.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {
@@ -64,7 +64,7 @@ impl RendererTiming {
             CommandKind::Sphere => self.sphere_clocks,
             CommandKind::PhongSphere => self.phong_sphere_clocks,
             CommandKind::Shade => self.shade_clocks,
-            // The transfer continues in parallel with the array.
+            // The transfer of the block continues in parallel with the array.
             CommandKind::StoreBacking | CommandKind::LoadBacking => self.select_clocks,
             CommandKind::WaitBacking => self.backing_block_clocks,
             CommandKind::CopyRegion => return None,

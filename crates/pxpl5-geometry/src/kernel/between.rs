@@ -1,25 +1,25 @@
-//! Code for triangles between two views: it records their corners in both views and makes commands for views in
-//! between.
+//! Code of the graphics processor for triangles between two views. It records the corners of triangles in both views,
+//! and makes commands for any view in between.
 //!
 //! The sources are kernels/ends.s, blend.s and between.s.
 
 use super::Kernel;
 
-/// Number of words of the record of a triangle in two views.
+/// Number of words of a triangle's record for two views.
 ///
-/// The record holds: a flag that the triangle is on the screen in both views, least and greatest y, a free word, and
-/// the corners in the first and second view.
+/// The record holds four words, then the corners in the first view and in the second view. The four words are: a flag
+/// that is set if both views have the triangle on the screen, the least y, the greatest y, and a free word.
 pub const ENDS_WORDS: usize = 28;
 
-/// Number of words of the record for the corners in one view.
+/// Number of words that a triangle's record has for each view.
 pub const ENDS_VIEW_WORDS: usize = 12;
 
 impl Kernel {
-    /// Returns the source that makes commands for triangles [between two views](Self::ends_source), for a strip of
-    /// lines.
+    /// Returns the source that makes commands of triangles [between two views](Self::ends_source). The commands are for
+    /// a strip of screen lines.
     ///
-    /// The code is like the compiled kernel for every schedule, and keeps each command with its box. Its entry is the
-    /// label `start`; kernels/between.s lists its registers.
+    /// The code is like the compiled kernel, for every optimization level. It stores the bounding box of each command.
+    /// Execution begins at the label `start`; kernels/between.s lists the registers.
     #[must_use]
     pub fn between_source(&self) -> String {
         let record = include_str!("../../kernels/ends_record.s");
@@ -31,8 +31,8 @@ impl Kernel {
         [common.as_slice(), &triangle, &[include_str!("../../kernels/box_kept.s")]].concat().join("\n")
     }
 
-    /// Returns the source that records triangles in two views (label `keepends`) and interpolates the views' matrices
-    /// (label `blend`).
+    /// Returns the source with two functions. The function at the label `keepends` records triangles in two views. The
+    /// function at the label `blend` interpolates between the matrices of the views.
     #[must_use]
     pub fn ends_source() -> String {
         [

@@ -1,4 +1,4 @@
-//! Bit-serial execution of instructions on fields of pixel memory.
+//! Bit-serial execution of the instructions that compute with fields of pixel memory.
 
 use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
@@ -6,9 +6,10 @@ use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
-/// An operand that is read from its least significant bit up and then extended by zeros or by its sign.
+/// An operand whose bits are read from the least significant bit upwards. After its last bit, it continues with zeros,
+/// or with copies of its sign.
 ///
-/// The sign is latched at the start, since the result may overwrite the operand.
+/// The sign is saved at the start, since the result can overwrite the operand.
 pub(super) struct SerialOperand {
     bits: FieldBits,
     extension: TilePlane,
@@ -24,7 +25,7 @@ impl SerialOperand {
     }
 }
 
-/// The second factor of a product.
+/// The second factor of a multiplication.
 enum Factor<'a> {
     Field(&'a SerialOperand),
     Constant(i32),
@@ -87,12 +88,12 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Stores one bit in the enabled pixels.
+    /// Stores one bit of a field in the enabled pixels.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Stores the bits that `f` returns in a field, least significant bit first, one bit per clock.
+    /// Stores the bits that `f` returns in a field: one bit per clock, least significant bit first.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -106,7 +107,8 @@ impl Tile {
         self.each_bit(destination, |memory, i| source.bit(memory, i + by));
     }
 
-    /// Shifts a field left, most significant bit first, so that source and destination may be the same field.
+    /// Shifts a field left. The most significant bit moves first, so the source and the destination can be the same
+    /// field.
     fn shift_left(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         for i in (0..destination.width).rev() {
@@ -121,7 +123,7 @@ impl Tile {
         let wa = source.width;
         let source = self.source(source);
         let mut over = EMPTY;
-        // A set sign bit also sets `over`; the second step below turns negative values into 0.
+        // A set sign bit also sets `over`. The second step below then turns negative values into 0.
         for i in w..wa {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
@@ -148,7 +150,7 @@ impl Tile {
             ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(&y), b.width, b.signed),
             ArithmeticOp::Divide => self.divide(destination, a, b),
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
-                // The comparison comes first; then each bit is selected by its result.
+                // The comparison comes first. Its result then selects each bit of the result.
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
                 if op == ArithmeticOp::Maximum {
                     planes::invert(&mut less);
@@ -163,12 +165,12 @@ impl Tile {
         }
     }
 
-    /// Computes `field := f(a, b)` bit by bit.
+    /// Computes `field := f(a, b)`, one bit at a time.
     fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Returns the pixels where a < b, from the borrow of a - b over `clocks` bits.
+    /// Returns the pixels where a < b: those where a - b, computed over `clocks` bits, ends with a borrow.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
@@ -177,7 +179,8 @@ impl Tile {
         }
         self.clock += clocks as u64;
         if a.signed {
-            // For two's complement numbers of different signs the negative one is less, so the borrow is inverted.
+            // If two's complement numbers have different signs, the negative number is less. So the last borrow is
+            // inverted.
             let last = clocks - 1;
             let signs = planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
             borrow = planes::combine(&borrow, &signs, |borrow, signs| borrow ^ signs);
@@ -186,7 +189,7 @@ impl Tile {
     }
 
     fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
-        // Find the pixels with a < b, or the pixels in which a and b differ.
+        // Find the pixels where a < b, or the pixels where a and b differ.
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -200,17 +203,17 @@ impl Tile {
                 differ
             }
         };
-        // Enable stays only where the test is true.
+        // Keep Enable only where the comparison is true.
         match test {
             Test::Less | Test::NotEqual => planes::and(&mut self.enable, &holds),
             Test::NotLess | Test::Equal => planes::and_not(&mut self.enable, &holds),
         }
     }
 
-    /// Computes `destination := a * b` by adding `a`, shifted, for each set bit of `b`.
+    /// Computes `destination := a * b`: for each set bit of `b`, adds `a`, shifted by the position of this bit.
     ///
-    /// Each addition takes one more clock for the carry. The sign bit of a signed `b` subtracts. Bits above the product
-    /// repeat its sign.
+    /// Each addition takes one more clock for its carry. For the sign bit of a signed `b`, `a` is subtracted instead.
+    /// The destination's bits above the product repeat the product's sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         // Add one shifted copy of `a` for each bit of `b`.
@@ -232,10 +235,10 @@ impl Tile {
         }
     }
 
-    /// Adds `x << j` in the pixels where `gate` is set, or subtracts it if `negative`.
+    /// Adds `x << j` to `destination` in the pixels where `gate` is set. If `negative` is true, subtracts it instead.
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
-        // The partial product is extended by its sign if the destination has a bit at `top`.
+        // The partial product is extended by its sign if the destination has a bit at position `top`.
         let extends = x.bits.signed && top < destination.width;
         let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY };
         let mut carry = EMPTY;
@@ -252,8 +255,8 @@ impl Tile {
         }
     }
 
-    /// Divides digit by digit, from the highest: compares the remainder with the divisor, then subtracts the divisor if
-    /// it is not larger.
+    /// Divides `a` by `b`, one binary digit at a time, from the highest digit. Each step compares the remainder with
+    /// the divisor, and subtracts the divisor unless it is larger.
     fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {
@@ -275,10 +278,10 @@ impl Tile {
         });
     }
 
-    /// Computes a square root digit by digit, from the highest.
+    /// Computes a square root, one binary digit at a time, from the highest digit.
     ///
-    /// The trial value of each step is the root so far followed by the bits 01, over the bits that the remainder can
-    /// occupy.
+    /// Each step compares the remainder with a trial value. The trial value is the known digits of the root, followed
+    /// by the bits 01. The comparison covers all bits that the remainder can occupy.
     fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {
@@ -294,7 +297,7 @@ impl Tile {
     }
 }
 
-/// Returns bit `k` of the trial value of a square root: the digits so far, followed by 01.
+/// Returns bit `k` of the trial value of a square root: the known digits of the root, followed by the bits 01.
 fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
     match k {
         0 => FULL,

@@ -1,4 +1,4 @@
-//! Collects consecutive instructions of a list into a run, and executes the run.
+//! Collection of consecutive instructions of a list into a run, and execution of the run.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -10,7 +10,8 @@ use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
-    /// Executes the run that begins at word `position`, and returns its length in words; 0 if no run begins there.
+    /// Executes the run that begins at word `position`, and returns its length in words. Returns 0 if no run begins
+    /// there.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
         let mut run = std::mem::take(&mut self.run);
         run.clear();
@@ -26,7 +27,8 @@ impl BitSerial {
         used
     }
 
-    /// Adds the next instruction to the run. Returns false if it is a fault or does not belong to the run.
+    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal or is of a
+    /// kind that runs do not contain.
     fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };
@@ -44,7 +46,7 @@ impl BitSerial {
         match *instruction {
             ArrayInstruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
-                // A repeated expression reuses the trees of the last one, unless the run has none yet.
+                // A repeated expression reuses the last expression of the run, if there is one.
                 if expression != Expression::LinearAgain || run.expressions.is_empty() {
                     if run.expressions.len() == EXPRESSIONS {
                         return None;

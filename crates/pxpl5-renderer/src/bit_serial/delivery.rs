@@ -1,4 +1,4 @@
-//! Effects of an expression's bits on the pixels of a tile.
+//! Effects of an expression's bits on the pixels of a tile, as the bits arrive.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -9,24 +9,24 @@ use std::ops::Range;
 
 /// A consumer of the bits of an expression.
 trait BitSink {
-    /// Takes bit `t` of the expression for one vector of pixels of a tile.
+    /// Takes bit `t` of the expression, for one vector of pixels of a tile.
     ///
-    /// `at` is the vector's first word in a plane. `carry` is zero at the first bit.
+    /// `at` is the index of the vector's first word in a plane. `carry` must be zero for the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Takes the carry after the last bit.
+    /// Takes the carry that remains after the last bit.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
-/// The use of an expression by the pixels: which bits they take, and what they do with them.
+/// The use that pixels make of an expression: the bits that they take, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Range of clocks in which the pixels take the delivered bits.
+    /// Clocks in which the pixels take a bit. One bit of the expression arrives in each clock.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation on the delivered bits. Fields are named by their first bit in pixel memory.
+/// The operation on the bits of an expression. A destination is given by its first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -37,7 +37,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Runs all clocks of an expression in one vector of pixels.
+    /// Evaluates an expression, bit by bit, for one vector of pixels, and applies the effect.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -68,7 +68,7 @@ impl Delivery {
         let at = place.at;
         let mut carries = E::start::<V>();
         let mut carry = V::splat(0);
-        // The first bits are left out, but their carries matter.
+        // The pixels do not take the first bits, but the carries of these bits matter.
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -80,7 +80,7 @@ impl Delivery {
     }
 }
 
-/// Overwrites one bit of the enabled pixels.
+/// Overwrites one bit plane in the enabled pixels of a vector.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -88,7 +88,7 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// Sink that clears Enable where the bit is set.
+/// A sink that clears Enable in the pixels whose bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -99,7 +99,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// Sink that stores the bits from `shift` on in a field.
+/// A sink that stores the bits from bit `shift` on in a field.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -112,7 +112,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// Sink that adds the bits from `shift` on to a field.
+/// A sink that adds the bits from bit `shift` on to a field.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -127,7 +127,7 @@ impl BitSink for AddBits {
     }
 }
 
-/// Sink that clears Enable unless the bits from `shift` on are less than the field.
+/// A sink that clears Enable in the pixels where the bits from bit `shift` on are not less than a field.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -146,7 +146,7 @@ impl BitSink for CompareBits {
     }
 }
 
-/// Sink that stores the difference between the expression and a source, from bit `shift` on.
+/// A sink that stores the difference of the expression and a source field, from bit `shift` of the difference on.
 struct StoreDifference {
     first: usize,
     shift: usize,
@@ -168,7 +168,7 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// Runs one clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
+/// Runs one clock of a serial subtracter in each pixel of a vector. It uses a - b = not (not a + b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

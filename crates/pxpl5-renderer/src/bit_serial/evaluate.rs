@@ -1,4 +1,4 @@
-//! Instructions with an expression: the evaluator's bits go to Enable or to pixel memory as they arrive.
+//! Instructions with an expression. As the bits arrive from the evaluator, they change Enable or pixel memory.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -10,7 +10,7 @@ use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
-/// A kernel that delivers an expression's bits to all tiles of the array.
+/// A kernel that delivers the bits of an expression to all tiles of the array.
 struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,
@@ -39,14 +39,15 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
 impl BitSerial {
     /// Evaluates an expression in all pixels.
     ///
-    /// A linear expression ends with the last bit that is taken. A quadratic expression always runs to its end.
+    /// For a linear expression, the instruction ends when pixels have taken their last bit. For a quadratic expression,
+    /// it ends after all bits of the expression.
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
         let vectors = self.vectors;
         let skipping = self.skipping;
         let tiles = &mut self.tiles[..];
-        // A linear expression may end early; a quadratic one keeps the trees busy to the end.
+        // A linear expression can end early; a quadratic expression keeps the trees busy to its last bit.
         match &local {
             LocalExpression::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
@@ -60,9 +61,10 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the bits to take from an expression of `bits` bits, and the operation on them, in the selected context.
+    /// Returns the bits to take from an expression of `bits` bits, and the operation on them. Fields are those of the
+    /// selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
-        // A test of the sign takes only the last bit; a difference needs all bits for its borrow.
+        // A test of the sign takes only the last bit. A difference takes all bits, since it needs their borrow.
         let (taken, effect) = match *usage {
             ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, ExpressionEffect::DisableNegative),
             ExpressionUse::Load { field, shift } => {
@@ -87,8 +89,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the range of clocks in which a field takes bits, after the first `shift` bits, and the field's first
-    /// bit.
+    /// Returns the clocks in which a field takes bits, and the field's first bit in pixel memory. The expression's
+    /// first `shift` bits are left out.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

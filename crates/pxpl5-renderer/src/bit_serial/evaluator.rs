@@ -1,32 +1,34 @@
-//! Expression evaluator: trees of serial adders that deliver one bit of the expression per clock to every pixel.
+//! Expression evaluator: trees of serial adders. In each clock, they deliver one bit of an expression's value to every
+//! pixel.
 //!
-//! A tree multiplies a coefficient by the number of each column (or row). Level `l` delays the coefficient by `l`
-//! clocks and adds it to the leaves whose number has bit `l`. Coefficients enter least significant bit first.
+//! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
+//! tree delays the coefficient by `l` clocks. It adds the delayed coefficient to the leaves whose index has bit `l`
+//! set. Coefficients enter with the least significant bit first.
 //!
-//! For a linear expression every pixel adds its column's stream to its row's stream. For a quadratic expression, wider
-//! trees multiply by the squares of the numbers. Each row also gets its own coefficient of x, and each pixel multiplies
-//! that coefficient by its column. This circuit is assumed: F89 publishes only the expression.
+//! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
+//! expression, wider trees multiply by the squares of the indices. Each row also gets its own coefficient of x, and
+//! each pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
 //!
-//! No data flows back from the pixels, so the trees first run all their clocks. Then each vector of pixels runs all of
-//! its clocks, with its carries in registers. A lane of the trees is 32 columns or rows. A lane of pixels is a row of a
-//! tile.
+//! No data flows from the pixels back to the trees. So the trees first run all their clocks. Then each vector of pixels
+//! runs all of its clocks, with its carries in registers. In vectors for trees, a lane holds 32 columns or rows. In
+//! vectors for pixels, a lane holds one row of a tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Bits of a column's number (0 to 127).
+/// Number of bits of a column's index (0 to 127).
 const NUMBER_BITS: usize = 7;
-/// Bits of the square of a column's number.
+/// Number of bits of the square of a column's index.
 const SQUARE_BITS: usize = 14;
 
-/// One bit for each of 128 columns or rows.
+/// A set of leaves of a tree, as one bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// For each bit `l`, the columns (or rows) whose number has this bit.
+/// For each bit `l`, the columns (or rows) whose index has this bit set.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// For each bit `l`, the columns (or rows) whose squared number has this bit.
+/// For each bit `l`, the columns (or rows) whose squared index has this bit set.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -45,17 +47,17 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// Output of adjacent trees in one clock: the lanes of a vector, two lanes in a word.
+/// Outputs of adjacent trees in one clock. Each word holds two lanes of a vector, and each bit belongs to one leaf.
 type Streams = [u64; 8];
 
-/// Adjacent trees of serial adders. Each adds a coefficient times a number to the stream of each leaf. A leaf is one
-/// bit of a vector.
+/// Adjacent trees of serial adders. For each leaf, a tree adds a coefficient times the leaf's index to a bit stream.
+/// Each leaf is one bit of a vector.
 pub(super) struct Trees<V, const LEVELS: usize> {
-    /// Low and high halves of the coefficient that enters the tree of each lane.
+    /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
-    /// For each level, the leaves whose number has that level's bit.
+    /// For each level `l`, the leaves whose index has bit `l` set.
     leaves: [V; LEVELS],
-    /// Recent bits of the coefficients, one for each level; level `l` uses the bit of `l` clocks ago.
+    /// Delayed bits of the coefficients: level `l` uses the bit of `l` clocks ago.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -67,7 +69,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees of 128 leaves each in the first eight lanes. The other lanes are not used.
+    /// Creates two trees of 128 leaves each, in the first eight lanes of a vector. Other lanes are unused.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -77,7 +79,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Returns bit `t` of the sums. Callers must pass `t` = 0, 1, 2 and so on.
+    /// Returns bit `t` of each leaf's sum: the stream plus the products. Callers must pass `t` = 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -91,7 +93,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Returns the low and high halves of two numbers, in the lanes of their trees.
+/// Returns the low halves and the high halves of two numbers, each repeated in the four lanes of its tree.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
@@ -104,13 +106,13 @@ fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
-/// Returns bit `t` of the 64-bit number whose halves a lane holds.
+/// Returns bit `t` of a 64-bit number in each lane. `low` and `high` are the halves of these numbers.
 #[inline(always)]
 fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// Returns the lanes of a vector, followed by zeros.
+/// Returns the lanes of a vector as words, followed by zeros.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
@@ -118,7 +120,7 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// Position of a vector of pixels in a tile, and of the column and row streams for it.
+/// Position of a vector of pixels in a tile, and positions of its column bits and row bits in the streams.
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
     /// Index of the vector's first word in a tile's plane.
@@ -127,7 +129,7 @@ pub(super) struct VectorPlace {
     rows: StreamStart,
 }
 
-/// Position in [`Streams`] of the first bit for a vector of pixels.
+/// Position in [`Streams`] of the bit for the first column or row of a vector of pixels.
 #[derive(Clone, Copy)]
 struct StreamStart {
     word: usize,
@@ -135,7 +137,7 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the place of a row of a tile, for a pair of trees that span the whole array.
+    /// Returns the position of a tile's row in the streams of two trees that span the whole array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -144,20 +146,20 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the place of a row of a tile, for a pair of trees that span one tile. Columns are in the low half of a
-    /// word, rows in the high half.
+    /// Returns the position of a tile's row in the streams of two trees that span one tile. The column bits are in the
+    /// low half of word `word`, and the row bits are in its high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
     }
 
-    /// Returns the bits of the columns, repeated in all rows.
+    /// Returns the stream bits of the columns, repeated for all rows of the vector.
     #[inline(always)]
     fn columns<V: SimdVector>(&self, streams: &Streams) -> V {
         V::splat(self.columns.bits_in(streams) as i32)
     }
 
-    /// Returns the bits of the rows, each repeated in all pixels of its row.
+    /// Returns the stream bits of the rows, each repeated for all pixels of its row.
     #[inline(always)]
     fn rows<V: SimdVector>(&self, streams: &Streams) -> V {
         V::spread(self.rows.bits_in(streams))
@@ -171,45 +173,45 @@ impl StreamStart {
     }
 }
 
-/// Serial adders of the pixels that combine the streams of the trees.
+/// Serial adders in the pixels. They combine the bit streams of the trees into the bits of an expression.
 pub(super) trait Evaluator {
-    /// State of the adders of a vector of pixels between two clocks.
+    /// State of the adders of one vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
     /// Returns the carries before the first bit, which are zero.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
-    /// Returns bit `t` of the expression in a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
+    /// Returns bit `t` of the expression for a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
     fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut Self::Carries<V>) -> V;
 }
 
 /// An evaluator whose trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// Linear or quadratic coefficients, which the trees multiply by the numbers of columns and rows.
+    /// Coefficients of a linear or quadratic expression. The trees multiply them by the indices of columns and rows.
     type Coefficients;
 
     /// Runs the trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
-/// Column and row streams of a linear expression, one entry for each clock.
+/// Column streams and row streams of a linear expression, one entry for each clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
 /// Tree outputs of a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// Output of the trees of a quadratic expression in one clock.
+/// Outputs of the trees of a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// Sum xx x^2 of each column, and sum one + y y + yy y^2 of each row.
+    /// Sum xx x^2 for each column x, and sum one + y y + yy y^2 for each row y.
     sums: Streams,
-    /// Coefficient of x of each row, x + xy y, in the lanes that hold the rows in `sums`.
+    /// Coefficient of x for each row: x + xy y. It is in the same lanes as the row's bits in `sums`.
     coefficients: Streams,
 }
 
-/// Adder state of a vector of pixels for a quadratic expression.
+/// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Recent bits of the coefficient of x, one for each level of the product.
+    /// Delayed bits of the coefficient of x, one for each level of the product.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,
@@ -253,7 +255,8 @@ impl WholeTrees for QuadraticStreams {
         let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
         let constants = in_lanes([q.x, q.one]);
-        // The second trees (of the rows) are added up. The first tree of the numbers gives the coefficients of x.
+        // The second trees, which belong to the rows, are added up. The first tree of the indices gives the
+        // coefficients of x.
         let second = V::spread(0xf0);
         let mut out = [QuadraticBits::default(); QUADRATIC_BITS as usize];
         for (t, out) in out[..bits].iter_mut().enumerate() {

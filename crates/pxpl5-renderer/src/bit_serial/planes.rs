@@ -1,4 +1,4 @@
-//! Operations of the one-bit processors of a tile, on all pixels at once.
+//! Operations that the one-bit processors of a tile perform on all pixels at once.
 
 use super::tile::{EMPTY, TilePlane};
 
@@ -34,7 +34,7 @@ pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// Computes `old := new` in the enabled pixels.
+/// Computes `old := new` in the pixels where `enable` is set.
 #[inline(always)]
 pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     for ((old, new), enable) in old.iter_mut().zip(new).zip(enable) {
@@ -64,13 +64,13 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Runs one clock of a serial adder, or of a serial subtracter if `subtracts`.
+/// Runs one clock of a serial adder in all pixels, or of a serial subtracter if `subtracts` is true.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }
 }
 
-/// Sets `borrow` to the next borrow of a - b.
+/// Sets `borrow` to the next borrow of a - b - borrow, without computing the difference.
 #[inline(always)]
 pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter().zip(b).zip(borrow) {
@@ -78,7 +78,7 @@ pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     }
 }
 
-/// Returns `f` of two planes, word by word.
+/// Returns a plane with `f(a, b)` in each word.
 #[inline(always)]
 pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
     let mut out = EMPTY;

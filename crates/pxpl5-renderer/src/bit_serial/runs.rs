@@ -1,12 +1,13 @@
-//! Skipping mode for runs of linear expressions and constants: leaves out work that changes nothing.
+//! Skipping mode for runs, which are consecutive instructions with linear expressions or constants. It leaves out work
+//! that changes no bit.
 //!
-//! No data flows from pixel to pixel, so a tile may execute all instructions of a run before the next tile begins:
+//! No data flows from pixel to pixel. So a tile can execute all instructions of a run before the next tile begins:
 //!
-//! - A tile whose pixels are all disabled does nothing, since an expression never enables pixels.
+//! - If all pixels of a tile are disabled, the tile does nothing, since an expression never enables pixels.
 //! - An expression that is negative at all corners of a tile disables the tile without adders. An expression that is
 //!   negative at no corner disables no pixel. Both need an expression that does not overflow 32 bits in the array.
-//! - A tile is a smaller array. Its origin is added to the constant coefficient, as the origin of a region is. The
-//!   trees then have five levels, and the trees of several expressions fit side by side in a vector.
+//! - A tile is like a smaller array. Its origin is added to the constant coefficient, as the origin of a region is. For
+//!   a tile, the trees have five levels, so the trees of several expressions fit side by side in a vector.
 //!
 //! The remaining work is done bit by bit, as in the reference mode.
 
@@ -18,21 +19,21 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run: the trees of all of them fit in the widest vector.
+/// Largest number of expressions in a run. The trees of so many expressions fit together in the widest vector.
 pub(super) const EXPRESSIONS: usize = 8;
 
-/// Bits of a column's number within its tile (0 to 31).
+/// Number of bits of a column's index within its tile (0 to 31).
 const LEVELS: usize = 5;
-/// For each bit `l`, the columns (and rows) of a tile whose number has this bit.
+/// For each bit `l` of the index, the columns (and rows) of a tile whose index has this bit set.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
-/// Consecutive instructions that each tile executes together.
+/// Consecutive instructions that each tile executes before the next tile begins.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
-    /// Expressions over the columns and rows of the whole array.
+    /// Linear expressions of the run, with the array's upper left pixel as origin.
     pub(super) expressions: Vec<Linear>,
-    /// Length of the run in words of the list.
+    /// Number of words that the run takes in the list.
     pub(super) words: usize,
 }
 
@@ -43,16 +44,17 @@ pub(super) struct RunStep {
     pub(super) delivery: Delivery,
 }
 
-/// Origin of the bits that an instruction delivers.
+/// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// Index of an expression of the run.
+    /// The expression of the run with this index.
     Expression(usize),
     Constant(ConstantBits),
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels, if the instruction does that.
+    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
+    /// kind.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -62,7 +64,7 @@ impl RunStep {
     }
 }
 
-/// Execution of a run in all tiles.
+/// A kernel that executes a run in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -94,7 +96,7 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns the known signs of the expressions whose sign disables pixels.
+    /// Returns, for each expression whose sign disables pixels, the tiles in which its sign is known.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -106,7 +108,7 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles, one per bit, that the first instructions of the run disable completely.
+    /// Returns the tiles that the run's first instructions disable completely, as one bit for each tile.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -129,7 +131,7 @@ impl InstructionRun {
             match step.input {
                 BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
                 BitOrigin::Expression(i) => {
-                    // A known sign decides the whole tile without adders.
+                    // If the sign is known, it decides the whole tile without adders.
                     if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
@@ -154,7 +156,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers bits to the vectors of a tile that have enabled pixels. `word` is the word of the trees' streams.
+    /// Delivers bits to those vectors of a tile that contain enabled pixels. `word` is the index of the streams' word
+    /// to use.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -165,30 +168,30 @@ impl Delivery {
     }
 }
 
-/// Tiles in which the sign of an expression is known without serial arithmetic.
+/// Sets of tiles in which the sign of an expression is known without serial arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
-    /// Tiles, one per bit, in which the expression is negative everywhere.
+    /// Tiles in which the expression is negative at every pixel, as one bit for each tile.
     negative: u32,
-    /// Tiles, one per bit, in which the expression is negative nowhere.
+    /// Tiles in which the expression is at least 0 at every pixel, as one bit for each tile.
     positive: u32,
 }
 
 impl Signs {
-    /// Derives the signs from the values at the corners of each tile. They stay unknown if the expression overflows in
-    /// the array.
+    /// Finds the signs from the values at the corners of each tile. If the expression overflows anywhere in the array,
+    /// no sign is known.
     #[inline(always)]
     fn from_corners<V: SimdVector>(e: &Linear) -> Self {
         if wraps(e) {
             return Self::default();
         }
-        // Values at the left top pixel of each tile.
+        // Values at the upper left pixel of each tile.
         let mut corners = [0; TILES];
         for (number, corner) in corners.iter_mut().enumerate() {
             let [left, top] = tile::origin(number);
             *corner = e.at(left as i32, top as i32) as u32;
         }
-        // The value changes by at most these amounts within a tile.
+        // Across a tile, the value changes by at most these amounts.
         let across = e.a * (WIDTH as i32 - 1);
         let down = e.b * (HEIGHT as i32 - 1);
         let largest = V::splat(across.max(0) + down.max(0));
@@ -207,7 +210,7 @@ const fn lanes<V: SimdVector>() -> u32 {
     u32::MAX >> (32 - V::LANES)
 }
 
-/// Returns true if an expression exceeds 32 bits anywhere in the array.
+/// Returns true if an expression exceeds 32 bits at any pixel of the array.
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;
@@ -218,7 +221,7 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Tree outputs of a tile for the expressions of a run, one word for each expression.
+/// Outputs of the trees of one tile, with one word in each clock for each expression of a run.
 struct TileStreams {
     streams: LinearStreams,
     /// Number of expressions whose trees have run.
@@ -226,7 +229,7 @@ struct TileStreams {
 }
 
 impl TileStreams {
-    /// Runs the trees of the next expressions, as many as a vector holds.
+    /// Runs the trees of the next expressions of the run. It runs as many trees at once as fit in a vector.
     #[inline(always)]
     fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);
@@ -246,7 +249,7 @@ impl TileStreams {
     }
 }
 
-/// A constant that is delivered bit by bit, like an expression.
+/// A constant whose bits are delivered one by one, like those of an expression.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConstantBits {
     pub(super) value: u32,

@@ -1,6 +1,7 @@
-//! Tiles of 32 x 16 pixels, which divide the array.
+//! Tiles of 32 x 16 pixels, into which the array is divided.
 //!
-//! One bit of all pixels of a tile is 512 adjacent bits of memory, the width of the widest vector unit.
+//! One bit of each pixel of a tile takes 512 adjacent bits of the host's memory. This is the width of the widest vector
+//! unit.
 
 use crate::array::{EMPTY_PLANE, PIXELS, Plane};
 use crate::isa::MEMORY_BITS;
@@ -13,7 +14,7 @@ pub(super) const ACROSS: usize = REGION_SIZE as usize / WIDTH;
 /// Number of tiles in the array.
 pub(super) const TILES: usize = PIXELS / (WIDTH * HEIGHT);
 
-/// One bit of every pixel of a tile: the bit of pixel (x, y) is bit `x + 32 (y % 2)` of word `y / 2`.
+/// One bit of every pixel of a tile. The bit of pixel (x, y) is bit `x + 32 (y % 2)` of word `y / 2`.
 pub(super) type TilePlane = [u64; HEIGHT / 2];
 
 pub(super) const EMPTY: TilePlane = [0; HEIGHT / 2];
@@ -25,7 +26,7 @@ pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
-    /// Clocks in which planes moved.
+    /// Number of clocks in which bit planes of this tile have moved.
     pub(super) clock: u64,
 }
 
@@ -38,28 +39,29 @@ impl Tile {
         any(&self.enable)
     }
 
-    /// Returns true if an instruction that changes only enabled pixels must be executed in this tile.
+    /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
-    /// The reference mode always executes it; the `skipping` mode needs an enabled pixel.
+    /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
+    /// pixel do.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()
     }
 }
 
-/// Returns true if any bit is set.
+/// Returns true if any bit of the words is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
 }
 
-/// Returns the left column and top row of a tile.
+/// Returns the left column and the top row of a tile in the array.
 #[inline(always)]
 pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]
 }
 
-/// Joins the planes of all tiles into a plane of the array.
+/// Joins the planes of all tiles, in order, into a plane of the array.
 pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane {
     let mut plane = EMPTY_PLANE;
     for (number, tile) in tiles.into_iter().enumerate() {
@@ -71,7 +73,7 @@ pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane 
     plane
 }
 
-/// Returns the part of a plane that belongs to a tile.
+/// Returns the part of an array's plane that belongs to tile `number`.
 pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     let mut tile = EMPTY;
     for y in 0..HEIGHT {
@@ -81,7 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the word of a plane that holds row `y` of a tile, and the row's first bit in that word.
+/// Returns the index of the word of an array's plane that holds row `y` of a tile, and the row's first bit in this
+/// word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

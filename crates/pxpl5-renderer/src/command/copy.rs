@@ -1,18 +1,19 @@
-//! Commands for region selection, clearing, copying and the backing store.
+//! Commands for selecting a region, clearing, copying, and moving data to and from the backing store.
 
 use super::{CommandKind, enable};
 use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
-/// Selects the context and the screen position of the region for the following commands.
+/// Selects the context and the screen position of the region for all commands that follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelectRegion {
-    /// Context of pixel memory, less than the layout's number of contexts.
+    /// Index of the context, less than the layout's number of contexts.
     pub context: u8,
     /// Screen x of the region's left column, in pixels.
     pub left: u16,
-    /// Screen y of the region's top row, counted in drawn lines (one field has every second line).
+    /// Screen y of the region's top row, counted in drawn lines. For a field, only every second line of the frame
+    /// counts.
     pub top: u16,
 }
 
@@ -29,7 +30,7 @@ impl SelectRegion {
     }
 }
 
-/// Sets colour to the background and Z to the far plane in the whole array.
+/// Sets the colour to the background and Z to the far plane, in all pixels of the array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clear {
     /// Background colour, 0x00RRGGBB.
@@ -56,7 +57,7 @@ impl Clear {
 /// Copies the region's colour to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Destination: frame buffer, buffer, region and its grid, lines, and picture.
+    /// Destination of the pixels: frame buffer, buffer, region and its grid, lines, and picture.
     pub target: CopyTarget,
 }
 
@@ -90,7 +91,7 @@ impl CopyRegion {
 pub struct StoreBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit in pixel memory, as an absolute address from 0 to 176.
+    /// First bit of the field in pixel memory, an absolute address from 0 to 176.
     pub address: u8,
 }
 
@@ -112,7 +113,7 @@ impl StoreBacking {
 pub struct LoadBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit in pixel memory, as an absolute address from 0 to 176.
+    /// First bit of the field in pixel memory, an absolute address from 0 to 176.
     pub address: u8,
 }
 

@@ -11,20 +11,21 @@ use pxpl5_wire::{Linear, Word};
 pub struct TriangleCommand {
     /// Edge expressions; a pixel is inside where all three are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`]; nearer is smaller.
+    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits. A smaller depth is nearer.
     pub depth: Linear,
-    /// Red, green and blue expressions with [`COLOUR_FRACTION_BITS`].
+    /// Red, green and blue expressions, with [`COLOUR_FRACTION_BITS`] fraction bits.
     pub colour: [Linear; 3],
 }
 
-/// A triangle with interpolated normals, which is shaded at the end of the frame (Phong).
+/// A triangle with interpolated normals. Its pixels are shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
     /// Edge expressions; a pixel is inside where all three are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`]; nearer is smaller.
+    /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits. A smaller depth is nearer.
     pub depth: Linear,
-    /// Expressions for x, y and z of the normal with [`NORMAL_FRACTION_BITS`]. The normal need not have unit length.
+    /// Expressions for x, y and z of the normal, with [`NORMAL_FRACTION_BITS`] fraction bits. The normal can have any
+    /// length.
     pub normal: [Linear; 3],
     /// Colour of the object, 0x00RRGGBB.
     pub colour: u32,
@@ -75,7 +76,8 @@ pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Ar
     ArrayInstruction::Evaluate { expression, usage }
 }
 
-/// Appends the instructions for three edges and Z: test the edges, keep only nearer pixels, store their Z.
+/// Appends the instructions for three edges and Z. They disable pixels outside the edges and pixels that are not
+/// nearer, then store Z.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
@@ -87,21 +89,22 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<A
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
 pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// Word offsets of the coefficients of the three edges in an encoded triangle command.
+/// Positions of the three edges' coefficients in an encoded triangle command, in words from its start.
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Word offset of the colour of a Phong triangle.
+/// Position of the colour in an encoded Phong triangle command, in words from its start.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
-/// A fast encoder for triangle commands. It skips the program, since a scene sends 100,000 triangles a frame.
+/// A fast encoder of triangle commands. It does not build the program of each command, since a scene sends 100,000
+/// triangles a frame.
 ///
-/// The words of all triangles of a layout differ only in their operands. The encoder copies a blank triangle and
-/// overwrites the operands.
+/// In one layout, the words of all triangle commands differ only in their operands. The encoder copies the words of a
+/// blank triangle, then overwrites the operands.
 #[derive(Clone, Debug)]
 pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 
-/// A fast encoder for Phong triangle commands, like [`TriangleEncoder`].
+/// A fast encoder of Phong triangle commands, like [`TriangleEncoder`].
 #[derive(Clone, Debug)]
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 
@@ -112,7 +115,8 @@ impl TriangleEncoder {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the same words as [`Command::program`](super::Command::program) encodes to.
+    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.colour, out);
@@ -132,21 +136,22 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the same words as [`Command::program`](super::Command::program) encodes to.
+    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.normal, out)[COLOUR_AT] = triangle.colour;
     }
 }
 
-/// Returns the words of a program, which must have exactly `N` words.
+/// Returns the words of a program that has exactly `N` words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends a blank triangle with the given operands, and returns the appended words.
+/// Appends the words of a blank triangle with the given operands, and returns the appended words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

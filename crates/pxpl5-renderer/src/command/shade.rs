@@ -1,15 +1,16 @@
-//! Deferred shading at the end of the frame.
+//! The shading command at the end of the frame.
 
 use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};
 use crate::layout::Layout;
 
-/// Number of times the cosine of the highlight is squared: 5, for a power of 2^5 = 32 (assumed).
+/// Number of times that the cosine of the highlight is squared: 5, for a power of 2^5 = 32 (assumed).
 pub const SPECULAR_SQUARINGS: u32 = 5;
 
-/// Shades every pixel that a command has covered (Z nearer than the far plane). Other pixels keep the background.
+/// Shades every pixel that a command has covered, which is every pixel with Z nearer than the far plane. Other pixels
+/// keep the background.
 ///
-/// Inputs are the normal N, the object's colour C, and a light and an eye at infinity:
+/// Inputs are the normal N, the object's colour C, and the directions to a light and an eye at infinity:
 ///
 /// ```text
 /// d = limit(N . light / |N|)        10 bits, 1.0 = 1024
@@ -18,37 +19,38 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// C := limit((C i >> 8) + (s specular >> 10))
 /// ```
 ///
-/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is five squarings that
-/// keep 10 bits. The limits are 0 and all ones. A zero normal is shaded as if it faced the light.
+/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. Five squarings, which keep 10
+/// bits each, compute the power. The function `limit` limits a value to the range from 0 to all ones. A zero normal is
+/// shaded as if it faced the light.
 ///
-/// The command takes 3,790 clocks: the root takes 206, each quotient 374 and the power 570. The time assumed for the
-/// machine is 100 to 200 us. The model leaves out a second light (a cosine takes 938 clocks) and a material per pixel,
-/// which would also fit.
+/// The command takes 3,790 clocks (95 us): the root takes 206, each quotient 374 and the power 570. For the machine, a
+/// time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a material for each pixel are not
+/// modelled. They would also fit in this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
-    /// Unit vector towards the light, 1.0 = 1024. Each component has 12 bits, two's complement; the length is at most
-    /// 2.0.
+    /// Unit vector towards the light; 1.0 is 1024. Each component has 12 bits, two's complement. The vector's length
+    /// must be at most 2.0.
     pub light: [i16; 3],
-    /// Unit vector half way between light and eye, in the same format as `light`.
+    /// Unit vector half way between the directions to the light and to the eye, in the same format as `light`.
     pub half: [i16; 3],
-    /// Share of the object's colour that is visible without light, 1.0 = 256.
+    /// Share of the object's colour that is visible without light; 1.0 is 256.
     pub ambient: u8,
-    /// Share of the object's colour that full light adds, 1.0 = 256.
+    /// Share of the object's colour that full light adds; 1.0 is 256.
     pub diffuse: u8,
-    /// Intensity of the white highlight; 255 is full.
+    /// Intensity of the white highlight; 255 is the full intensity.
     pub specular: u8,
 }
 
-/// Bits of each component of the light and half vectors.
+/// Number of bits of each component of the vectors `light` and `half`.
 const VECTOR_BITS: u8 = 12;
 const COSINE_BITS: u8 = 10;
 
-/// Bits of scratch memory that the shading program needs.
+/// Number of bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// First bit of the square root in the scratch memory.
+/// First bit of the square root, relative to the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
-/// Pixel memory fields of the shading program.
+/// Fields of pixel memory that the shading program uses.
 pub(crate) struct ShadeFields {
     normal: [Operand; 3],
     colour: [Operand; 3],
@@ -87,7 +89,7 @@ impl Shade {
             enable(CommandKind::Shade),
             ArrayInstruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
         ];
-        // |N| first, since both cosines divide by it.
+        // Compute |N| first, since both cosines divide by it.
         length(&f, &mut out);
         cosine(&f, self.light, f.diffuse, &mut out);
         cosine(&f, self.half, f.specular, &mut out);
@@ -99,8 +101,8 @@ impl Shade {
         Ok(out)
     }
 
-    /// Computes the light on the object's colour (in the low 8 bits of `f.diffuse`) and the highlight (in bits 10 to 18
-    /// of `f.c`).
+    /// Computes the brightness of the object's colour, in the low 8 bits of `f.diffuse`. Also computes the highlight,
+    /// in bits 10 to 18 of `f.c`.
     fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
@@ -137,7 +139,7 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// Computes |N| in `f.root` from the sum of squares in `f.a`. `f.a` keeps the remainder of the root.
+/// Computes |N| in `f.root` from the sum of squares in `f.a`. The remainder of the root stays in `f.a`.
 fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
@@ -161,8 +163,8 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Raises the cosine of the highlight to the power 32 and returns the field of the result. Squares alternate between
-/// `f.a` and `f.b`.
+/// Raises the cosine of the highlight to the power 32, and returns the field with the result. The squares go
+/// alternately to `f.a` and `f.b`.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
@@ -192,7 +194,7 @@ fn read_factor(program: &[ArrayInstruction], index: usize) -> Option<i32> {
 }
 
 fn read_vector(program: &[ArrayInstruction], first: usize) -> Option<[i16; 3]> {
-    // The addition of x and y comes between the products of y and z.
+    // The addition of x and y comes between the products for y and z.
     let indices = [first, first + 1, first + 3];
     let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));
     Some([x?, y?, z?])

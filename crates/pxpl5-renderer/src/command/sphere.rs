@@ -1,4 +1,4 @@
-//! Sphere commands with exact silhouettes; the depth comes from a square root.
+//! Sphere commands. Silhouettes are exact, and the depth comes from a square root.
 
 use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
@@ -18,71 +18,74 @@ use pxpl5_wire::{Linear, Quadratic};
 /// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS          24 bits, as for a triangle
 /// ```
 ///
-/// At the middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle in front
-/// of the plane `depth`, in units of the depth expression. To keep 11 bits or more of the root, choose `depth_shift` so
-/// that `bulge >> depth_shift` is in 2048 .. 4096. The silhouette must stay within 48 bits on the whole region. A
-/// layout with 10 root bits uses the upper bits of the same operands.
+/// At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle
+/// in front of the plane `depth`, in units of the depth expression. Choose `depth_shift` so that `bulge >> depth_shift`
+/// is in 2048 .. 4096; then the root keeps at least 11 bits. The silhouette must stay within 48 bits on the whole
+/// region. A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
     /// Silhouette expression of 48 bits; a pixel is inside where it is `>= 0`.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Depth of the plane of the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth of the plane through the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits.
     pub depth: Linear,
-    /// Left shift of the root before its subtraction from the depth, 0 to 20.
+    /// Left shift of the root, in bits, before its subtraction from the depth: 0 to 20.
     pub depth_shift: u8,
 }
 
 /// A sphere with interpolated colour.
 ///
-/// A sphere costs more than a triangle for three reasons. A quadratic takes 12 words and 48 clocks, and is needed twice
-/// (sign, radicand). The root takes 202 bit clocks, and the depth needs three passes instead of two, since it depends
-/// on the stored root. Interpolated colour also takes a product and a limit for each component (134 clocks each).
+/// A sphere costs more than a triangle for three reasons. First, a quadratic takes 12 words and 48 clocks, and is
+/// evaluated twice: for the sign and for the radicand. Second, the root takes 202 bit clocks. Third, the depth needs
+/// three passes instead of two, since it depends on the stored root. Interpolated colour also takes a product and a
+/// limit for each component (134 clocks each).
 ///
-/// The assumed cost "a little dearer than a triangle" fits a paraboloid, whose depth is the quadratic itself. It takes
-/// 318 clocks with a quadratic for each colour, or 268 with normals. Its depth is exact only at the silhouette and the
-/// middle, so intersecting spheres would meet in wrong places. The model therefore takes the root.
+/// The assumed cost "a little dearer than a triangle" would fit a paraboloid, whose depth is the quadratic itself. A
+/// paraboloid takes 318 clocks with a quadratic for each colour, or 268 with normals. Its depth is exact only at the
+/// silhouette and at the middle, so intersecting spheres would meet in wrong places. Therefore the model computes the
+/// root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
     /// Silhouette and depth.
     pub body: SphereBody,
-    /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
+    /// Linear part of red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits.
     pub colour: [Linear; 3],
     /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     ///
-    /// The sum must fit -512 to 511, or it wraps. The limit is 0 to 255.
+    /// The sum must be in -512 to 511, or it wraps. The function `limit` limits it to 0 to 255.
     pub root_factor: [i16; 3],
 }
 
-/// A sphere that is shaded at the end of the frame (Phong).
+/// A sphere whose pixels are shaded at the end of the frame (Phong).
 ///
-/// The z of its normal is `root >> 2`, so that the middle of the sphere has `r / 4`. The sender scales x and y alike,
-/// since shading normalizes the normal. Under perspective the normal's x and y are approximated as linear.
+/// The z of its normal is `root >> 2`. So the normal's z at the middle of the sphere is `r / 4`, where r is the root
+/// there. The sender uses the same scale for x and y, since shading normalizes the normal. Under perspective, x and y
+/// of the normal are approximated by linear expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
     /// Silhouette and depth.
     pub body: SphereBody,
-    /// Expressions for x and y of the normal with [`NORMAL_FRACTION_BITS`].
+    /// Expressions for x and y of the normal, with [`NORMAL_FRACTION_BITS`] fraction bits.
     pub normal: [Linear; 2],
     /// Colour of the object, 0x00RRGGBB.
     pub colour: u32,
 }
 
-/// Bits of the root for which the operands of [`SphereBody`] are defined.
+/// Number of root bits for which the operands of [`SphereBody`] are defined.
 const ROOT_BITS: u8 = 12;
-/// Number of upper bits of the root that a colour's factor multiplies.
+/// Number of upper bits of the root that are multiplied by a colour's factor.
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Scratch fields of a sphere's program.
+/// Scratch fields that a sphere's program uses.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// New depth. It shares bits with the radicand, which is not needed after the root.
+    /// New depth. It uses the bits of the radicand, which is no longer needed after the root.
     pub(crate) z: Operand,
-    /// Product of root and factor, 8 + 10 bits. It shares bits with the radicand.
+    /// Product of root and factor, 8 + 10 bits. It also uses the bits of the radicand.
     product: Operand,
 }
 
@@ -97,7 +100,7 @@ impl SphereScratch {
         if low + bits > all.width {
             return Err(MISSING);
         }
-        // Use the same bits as the root of the shading program, if the layout has them.
+        // If the layout has enough scratch, use the bits that the shading program uses for its root.
         let root = if all.width >= SHADE_BITS { SHADE_ROOT } else { low };
         Ok(Self {
             radicand: all.part(0, radicand_bits),
@@ -117,10 +120,11 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, root and depth: test, keep only nearer pixels, store Z.
+/// Appends the instructions for silhouette, root and depth. They disable pixels outside the sphere and pixels that are
+/// not nearer, then store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
-    // Sign of the silhouette, then the same quadratic again as radicand.
+    // Test the sign of the silhouette, then evaluate the same quadratic again as radicand.
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
         evaluate(
@@ -190,7 +194,7 @@ impl SphereCommand {
 
 /// Returns the instructions for `component := limit(linear + (upper root * factor >> 8))`.
 ///
-/// The sum is in the upper 10 bits of the product.
+/// The upper 10 bits of the product field hold the sum.
 fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [

@@ -233,7 +233,8 @@ fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
     assert_eq!(expected, 292);
 }
 
-/// Returns the clocks of a sphere until its depth is stored: enable, sign, radicand, root, depth, compare, store.
+/// Returns the clocks of a sphere's instructions up to the depth store: enable, sign, radicand, root, depth, compare,
+/// store.
 const fn sphere_coverage_clocks(root: u32, z: u32) -> u32 {
     2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS
 }
@@ -314,8 +315,8 @@ fn a_label_of_no_command_is_named() {
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(0xEE)));
 }
 
-/// A root has 12 bits, or 10 bits in a scratch of 30 bits. The scratch also holds the wider of the depth and the square
-/// of the root.
+/// Tests the scratch that spheres need: a root of 12 bits, or of 10 bits in a scratch of 30 bits, and a second field. The
+/// second field is as wide as the wider of the depth and the square of the root.
 #[test]
 fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     for z in 8..=24 {
@@ -331,8 +332,8 @@ fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     }
 }
 
-/// Operands are defined for a root of 12 bits. A root of 10 bits is a quarter of it, computed from a sixteenth of the
-/// square.
+/// Tests roots of 10 bits. Operands are defined for a root of 12 bits. A root of 10 bits is a quarter of this root,
+/// computed from a sixteenth of the square.
 #[test]
 fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     let body = SphereBody { root_shift: 3, depth_shift: 5, ..SphereBody::default() };
@@ -356,7 +357,7 @@ fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     }
 }
 
-/// A block has 16,384 pixels of 32 bits, over 64 chips with 4 bits a clock each.
+/// Computes the expected time: a block has 16,384 pixels of 32 bits, and 64 chips move 4 bits a clock each.
 #[test]
 fn the_backing_store_is_busy_with_blocks_alone() {
     for kind in CommandKind::ALL {

@@ -1,4 +1,4 @@
-//! Random lists of words; a seed gives the same list on every host.
+//! Random command lists for tests. The same seed gives the same lists on every host.
 
 use crate::command::{
     Clear, Command, LoadBacking, PhongSphereCommand, PhongTriangleCommand, SelectRegion, Shade, SphereBody,
@@ -41,7 +41,8 @@ impl Random {
         low + self.below((high - low) as u64) as i64
     }
 
-    /// Returns a list of mostly commands of the layout, with some single instructions and rare invalid words.
+    /// Returns a list that mostly consists of commands of the layout, with some single instructions and, rarely,
+    /// invalid words.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
         let mut last = self.command(layout);
@@ -149,8 +150,8 @@ impl Random {
         std::array::from_fn(|_| self.between(-1500, 1500) as i16)
     }
 
-    /// Returns the edges of a triangle of any size around a random pixel. One in ten results is three arbitrary
-    /// expressions.
+    /// Returns the edges of a triangle of random size around a random pixel. With a probability of 1/10, returns three
+    /// arbitrary expressions.
     fn edges(&mut self) -> [Linear; 3] {
         if self.below(10) == 0 {
             return std::array::from_fn(|_| self.wild());
@@ -173,12 +174,12 @@ impl Random {
         }
     }
 
-    /// Returns a plane whose values use about `bits` bits over a screen.
+    /// Returns a plane whose values on a screen have about `bits` bits.
     fn plane(&mut self, bits: u32) -> Linear {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
-    /// Returns an ellipse around a random pixel, or in one of eight cases an arbitrary quadratic.
+    /// Returns an ellipse around a random pixel. With a probability of 1/8, returns an arbitrary quadratic.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
@@ -202,7 +203,8 @@ impl Random {
     }
 }
 
-/// Returns the same shape in other colours. Its depths equal the old ones, so no pixel of it is nearer.
+/// Returns the same shape with other colours. Its depths equal the old ones, so the depth test fails at every pixel
+/// that the old shape has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -219,8 +221,8 @@ fn repainted(command: Command) -> Command {
     }
 }
 
-/// Returns the edge from p to q, in sixteenths of a pixel, with its inside on the left. Coefficients are truncated to
-/// 32 bits.
+/// Returns the edge expression from p to q, given in sixteenths of a pixel. The inside is on the left of the edge.
+/// Coefficients are truncated to 32 bits.
 fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let dx = q[0] - p[0];
     let dy = q[1] - p[1];

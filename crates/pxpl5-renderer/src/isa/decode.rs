@@ -1,4 +1,4 @@
-//! Decoder: from words to instructions.
+//! Decoder of words into instructions.
 
 use super::encode::{AGAIN, opcode};
 use super::{ArithmeticOp, ArrayInstruction, BACKING_BLOCKS, Expression, ExpressionUse, MEMORY_BITS, Operand, Test};
@@ -6,18 +6,18 @@ use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
 };
 
-/// The error for words that are no instruction.
+/// The error for words that encode no instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
-    /// Index of the instruction's first word in the list.
+    /// Index in the list of the instruction's first word.
     pub position: usize,
-    /// The first word of the undecodable instruction.
+    /// The first word of the instruction that cannot be decoded.
     pub word: Word,
     pub kind: DecodeErrorKind,
 }
 
-/// Reason why words are no instruction.
+/// Reason why words encode no instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
@@ -28,39 +28,39 @@ pub enum DecodeErrorKind {
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         expected: usize,
-        /// Words left in the list.
+        /// Number of words from the instruction's first word to the end of the list.
         found: usize,
     },
     /// Bits that must be zero are set.
     #[error("bits are set that must be zero")]
     ReservedBits,
-    /// A field ends beyond pixel memory.
+    /// A field extends beyond the end of pixel memory.
     #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
     /// A field has a width that this instruction does not allow.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
-        /// The field as the instruction names it.
+        /// The field as encoded in the instruction.
         field: Operand,
-        /// Required width in bits; for expressions and quotients the largest allowed width.
+        /// Required width in bits. For expressions and quotients it is the largest allowed width.
         expected: u32,
     },
-    /// Operands are signed but must not be, or differ in signedness.
+    /// The signedness of the operands is not allowed: they must be unsigned, or must both be signed or both unsigned.
     #[error("signedness of the operands does not fit")]
     Signedness,
-    /// No block of the backing store has this number.
+    /// The number of a backing store block is too large.
     #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
-    /// The lines, grid or region of an output are invalid.
+    /// The lines, region grid or region of an output instruction are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
-    /// The words are instructions, but not the program of the command that their label names.
+    /// The words are valid instructions, but their first label names a command with a different program.
     #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
 
 impl ArrayInstruction {
-    /// Decodes the instruction at `position`, and returns it with its length in words.
+    /// Decodes the instruction at word `position`. Returns the instruction and its length in words.
     ///
     /// # Errors
     /// [`DecodeError`] with the position and the reason. Never panics.
@@ -73,7 +73,7 @@ impl ArrayInstruction {
     /// Decodes all instructions of a list.
     ///
     /// # Errors
-    /// The first [`DecodeError`].
+    /// [`DecodeError`] for the first invalid instruction.
     pub fn decode_all(words: &[Word]) -> Result<Vec<Self>, DecodeError> {
         let mut out = Vec::new();
         let mut position = 0;
@@ -86,7 +86,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the words after it.
+/// The parts of an instruction's first word, and the words after this one.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
@@ -106,7 +106,7 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the field that the first word names, which must have one bit.
+    /// Returns the field that the first word names. This field must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
@@ -204,7 +204,7 @@ fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize
     let quadratic = encoded.opcode >= opcode::QUADRATIC;
     let use_code = encoded.opcode & 15;
     let (usage, used) = expression_use(encoded, use_code)?;
-    // Coefficients follow, unless the evaluator repeats its latched ones.
+    // Coefficients follow, unless the evaluator reuses the coefficients of its last expression.
     let rest = EncodedInstruction { tail: encoded.tail.get(used - 1..).unwrap_or(&[]), ..*encoded };
     let truncated =
         DecodeErrorKind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: encoded.tail.len() + 1 };
@@ -269,7 +269,7 @@ fn quadratic_of(words: [Word; 12]) -> Quadratic {
     }
 }
 
-/// Returns coefficient `i` of 64 bits, whose low word comes first.
+/// Returns coefficient `i`, which has 64 bits in two words. The low word comes first.
 fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
     (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
 }
@@ -384,7 +384,7 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
     if is_valid_target(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }
 
-/// Returns true if the region exists and fits the array and the 16-bit coordinates.
+/// Returns true if the region exists in its grid and fits the array and 16-bit coordinates.
 fn is_valid_target(target: &CopyTarget) -> bool {
     let grid = &target.grid;
     let picture = 1..=1 << 16;

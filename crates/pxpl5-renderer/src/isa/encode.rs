@@ -1,4 +1,4 @@
-//! Encoder: from instructions to words.
+//! Encoder of instructions into words.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, Word};
@@ -28,7 +28,7 @@ pub(crate) mod opcode {
     pub(crate) const OUTPUT: u8 = 0x70;
 }
 
-/// Bit 7 of the modifier: the evaluator repeats its latched coefficients.
+/// Bit 7 of the modifier. If it is set, the evaluator reuses the coefficients of its last expression.
 pub(super) const AGAIN: u8 = 0x80;
 
 pub(crate) const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
@@ -96,7 +96,7 @@ impl ArrayInstruction {
         }
     }
 
-    /// Returns the instruction's length in words.
+    /// Returns the length of the instruction in words.
     #[must_use]
     pub fn words(&self) -> u32 {
         let mut words = Vec::with_capacity(14);

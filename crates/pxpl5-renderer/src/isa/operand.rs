@@ -1,15 +1,15 @@
-//! Operands of instructions: fields of pixel memory.
+//! Operands of instructions: references to fields of pixel memory.
 
-/// A field of pixel memory as an instruction names it.
+/// A field of pixel memory, as encoded in an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Operand {
-    /// Address of the least significant bit: absolute, or relative to the selected context's base.
+    /// Address of the field's least significant bit, absolute or relative to the first bit of the selected context.
     pub address: u8,
     /// Width in bits, 1 to 64.
     pub width: u8,
-    /// True if the address is relative to the selected context's base.
+    /// True if the address is relative to the first bit of the selected context.
     pub relative: bool,
-    /// True if the field is two's complement, so that it is extended by its sign.
+    /// True if the field holds a two's complement number. It is then extended by its sign.
     pub signed: bool,
 }
 
@@ -17,7 +17,7 @@ const SIGNED: u32 = 1 << 15;
 const RELATIVE: u32 = 1 << 14;
 
 impl Operand {
-    /// Returns an unsigned field in the selected context.
+    /// Returns an unsigned field whose address is relative to the selected context.
     #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }
@@ -35,7 +35,8 @@ impl Operand {
         Self { signed: true, ..self }
     }
 
-    /// Returns `width` bits of this field from its bit `low` upwards. The signedness is kept.
+    /// Returns the part of this field that begins at bit `low` of the field and has `width` bits. The part is signed if
+    /// this field is signed.
     #[must_use]
     pub const fn part(self, low: u8, width: u8) -> Self {
         Self { address: self.address + low, width, ..self }
@@ -48,7 +49,7 @@ impl Operand {
         flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32
     }
 
-    /// Decodes the operand from 16 bits of an instruction word.
+    /// Decodes an operand from the low 16 bits of an instruction word.
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self {

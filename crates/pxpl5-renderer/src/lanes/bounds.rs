@@ -1,11 +1,12 @@
-//! Bounds of the pixels that a triangle can touch: a box, and spans of columns for the rows of wide boxes.
+//! Bounds of the pixels that a triangle can touch: a bounding box, and the first and last column of each row if the box
+//! is wide.
 //!
-//! Floating-point numbers, with a margin, only select the pixels to test. Integer arithmetic on the edges decides each
-//! pixel.
+//! Floating-point numbers only select the pixels to test, with a margin for rounding. Integer arithmetic on the edges
+//! decides whether a pixel is inside.
 
 use pxpl5_wire::{LANES, Linear, LinearLanes};
 
-/// Columns of the array, which has as many rows.
+/// Number of columns of the array, and of its rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
 /// Margin in pixels: greater than the rounding error of a quotient, but small enough to add few pixels.
@@ -22,15 +23,15 @@ pub(super) struct Area {
 
 const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 
-/// Bounds of a triangle: outside them at least one edge is negative.
+/// The pixels that a triangle can cover. At every other pixel at least one edge is negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) area: Area,
-    /// Limits that the edges set to the columns of a row, for wide triangles only.
+    /// Limits on the columns of each row, one for each edge. They are computed only for wide triangles.
     limits: Option<[RowLimit; 3]>,
 }
 
-/// The limit of a row by an edge: x >= or <= (b y + c) * scale. All numbers except the scale are exact.
+/// Limit that one edge sets on the x of row y: x >= or <= (b y + c) * scale. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -39,7 +40,7 @@ struct RowLimit {
     from_left: bool,
 }
 
-/// First column, and one past the last column, of some consecutive rows. An empty row has `left >= right`.
+/// First column, and one past the last column, of consecutive rows. An empty row has `left >= right`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spans {
     pub(super) left: [i32; LANES],
@@ -47,7 +48,7 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// Returns the spans of the rows from `top` on.
+    /// Returns the columns of [`LANES`] consecutive rows. The first row is `top`.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
@@ -70,7 +71,7 @@ impl Bounds {
                 }
             }
         }
-        // Round inwards to whole pixels; the margin is already included.
+        // Round to whole pixels inside the limits. The margin is already included in the limits.
         for i in 0..LANES {
             spans.left[i] = small(first[i].ceil().min(f64::from(WIDTH)));
             spans.right[i] = small((last[i] + 1.0).floor().max(0.0));
@@ -92,7 +93,7 @@ impl RowLimit {
 /// One value for each triangle of a batch.
 pub(super) type PerTriangle<T> = [T; LANES];
 
-/// The edges of the triangles of a batch, with the array's left top pixel as origin.
+/// The edges of all triangles of a batch, relative to the array's upper left pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
@@ -107,7 +108,8 @@ impl Edges {
         }
     }
 
-    /// Moves the origin of all edges to the array's left top pixel, which has this column and row of the picture.
+    /// Converts all edges from picture coordinates to the array's own. `left` and `top` are the picture coordinates of
+    /// the array's upper left pixel.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -128,19 +130,20 @@ impl Edges {
 /// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
-    /// First column (0 to 128) and last column (-1 to 127) inside the array.
+    /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// True if the edges enclose a finite triangle: their normals turn in the same direction at all corners.
+    /// True if the edges enclose a finite triangle. Then the normals of the edges turn in the same direction at all
+    /// corners.
     pub(super) closed: PerTriangle<bool>,
-    /// True if no value in the array exceeds 32 bits, so that the edges are straight lines.
+    /// True if no edge value in the array exceeds 32 bits. Then no value wraps, and every edge is a straight line.
     straight: PerTriangle<bool>,
 }
 
-/// Distance in pixels from the array's first pixel in which edge values must fit 32 bits.
+/// Distance from the array's first pixel, in pixels. Within this distance, edge values must fit 32 bits.
 ///
-/// Coefficients then have at most 22 bits and the constant 31, so that their products are exact in the 53 bits of an
-/// `f64`.
+/// Then each coefficient has at most 22 bits, and the constant has 31 bits. So their products are exact in the 53 bits
+/// of an `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {
@@ -150,7 +153,7 @@ impl Boxes {
         let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
         let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
         let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
-        // Truth values stay numbers until the end, since vectors of numbers are fastest.
+        // Truth values are numbers until the end, since vectors of numbers are fastest.
         let mut reach = [0.0_f64; LANES];
         let mut least = [f64::INFINITY; LANES];
         let mut greatest = [f64::NEG_INFINITY; LANES];
@@ -160,8 +163,8 @@ impl Boxes {
             let f = (e + 1) % 3;
             for i in 0..LANES {
                 reach[i] = reach[i].max(REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs());
-                // The corner is where edges e and f are zero. Its coordinates are the products below times 1 /
-                // determinant.
+                // The corner is the point where edges e and f are zero. Its coordinates are the products below, divided
+                // by the determinant.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
                 least[i] = least[i].min(determinant);
                 greatest[i] = greatest[i].max(determinant);
@@ -176,7 +179,7 @@ impl Boxes {
         }
         let mut straight = [false; LANES];
         let mut closed = [false; LANES];
-        // Conversions to bool in loops of their own keep the loop above vectorized.
+        // A separate loop converts to bool, so that the loop above stays vectorized.
         for i in 0..LANES {
             straight[i] = reach[i] <= f64::from(i32::MAX);
             closed[i] = (least[i] > 0.0) | (greatest[i] < 0.0);
@@ -187,7 +190,8 @@ impl Boxes {
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// Returns the bounds of triangle `i`, which has these edges; `None` if no pixel is inside.
+    /// Returns the bounds of triangle `i`; `None` if no pixel can be inside. `edges` must be the edges of this
+    /// triangle.
     #[inline(always)]
     pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
         let area = if self.closed[i] {
@@ -222,7 +226,7 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and last pixel of some intervals.
+/// Returns the first and last pixel between `low` and `high`, for each triangle.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -234,7 +238,7 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// Converts a small number to an integer; NaN gives an arbitrary result.
+/// Converts a small number to an integer. NaN gives an arbitrary result.
 ///
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
@@ -244,7 +248,7 @@ fn small(value: f64) -> i32 {
     (value + UNIT).to_bits() as i32
 }
 
-/// Returns the largest value of an expression in the array.
+/// Returns the largest value of an expression over the pixels of the array.
 #[inline(always)]
 fn largest(e: &Linear) -> i64 {
     let [a, b, c] = [e.a, e.b, e.c].map(i64::from);
@@ -272,8 +276,8 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    /// Returns an edge with coefficients of any size or zero. Constants may be extreme, so that many edges overflow in
-    /// the array.
+    /// Returns an edge with coefficients of any size or zero. Constants can be extreme, so many edges overflow in the
+    /// array.
     fn any_edge(random: &mut Random) -> Linear {
         let [a, b, c] = [(); 3].map(|()| {
             let bits = 1 + random.below(32) as u32;
@@ -335,7 +339,7 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// Uses integer corners and slopes, so that no row ends within the margin of a pixel.
+    /// Uses integer corners and slopes. So no row ends within the margin around a pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

@@ -1,4 +1,4 @@
-//! Pixel memory by values: every field of the layout is a column of 32-bit words, one for each pixel.
+//! Pixel memory of the fast array. Every field of the layout is a column of 32-bit words, one word for each pixel.
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
@@ -6,12 +6,12 @@ use crate::controller::FieldBits;
 use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 
-/// One word for each pixel, aligned to cache lines for fast vector access.
+/// One word for each pixel. The words are aligned to cache lines for fast vector access.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// Bits `first .. first + width` of all pixels.
+/// A column: the bits `first .. first + width` of all pixels.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -19,15 +19,15 @@ struct FieldColumn {
     values: Box<Values>,
 }
 
-/// All 208 bits of pixel memory, divided into columns at the borders of the layout's fields.
+/// All 208 bits of pixel memory, divided into columns at the first and last bits of the layout's fields.
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// Index of the column that holds each bit of pixel memory.
+    /// For each bit of pixel memory, the index of the column that holds it.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// A part of a field that lies in one column: bits `low ..` of the column are bits `at ..` of the field.
+/// The part of a field that lies in one column. Bit `low` of the column is bit `at` of the field; `width` bits follow.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -46,7 +46,7 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// Returns the column that holds exactly the given field, if there is one.
+    /// Returns the index of the column that holds exactly the given bits, or `None` if there is no such column.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];
@@ -61,7 +61,7 @@ impl PixelColumns {
         &mut self.columns[index].values
     }
 
-    /// Returns several different columns at once.
+    /// Returns several columns at once, or `None` if two indices are equal.
     pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut Values; N]> {
         let columns = self.columns.get_disjoint_mut(indices).ok()?;
         Some(columns.map(|column| &mut *column.values))
@@ -88,7 +88,8 @@ impl PixelColumns {
         }
     }
 
-    /// Reads a field of all pixels, extended to 64 bits by its signedness.
+    /// Reads a field of all pixels into `out`. The values are extended to 64 bits, by their signs if the field is
+    /// signed.
     pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
@@ -104,7 +105,7 @@ impl PixelColumns {
         }
     }
 
-    /// Stores the low bits of `values` in the pixels whose `mask` is 255. The other pixels have mask 0.
+    /// Stores the low bits of `values` in the pixels whose `mask` is 255. For the other pixels, the mask must be 0.
     pub(super) fn scatter(&mut self, field: FieldBits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
@@ -132,7 +133,7 @@ impl PixelColumns {
     }
 }
 
-/// Returns bit `low` of 64 pixels; the first pixel is the lowest bit of the result.
+/// Returns bit `low` of 64 pixels as one word. The first pixel is the lowest bit of the result.
 fn plane_word(pixels: &[u32], low: usize) -> u64 {
     pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
 }
@@ -145,11 +146,11 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Returns the first bits of all columns: the borders of the layout's fields, with further cuts so that no column
-/// exceeds 32 bits.
+/// Returns the first bits of all columns. A column begins wherever a field of the layout begins or ends. Longer columns
+/// are cut into columns of at most 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
-    // Borders of the layout's fields.
+    // First and last bits of the layout's fields.
     for range in layout.ranges() {
         cuts.extend([range.first as usize, (range.first + range.width) as usize]);
     }
@@ -160,7 +161,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
             cuts.push(base + usize::from(normal.address));
         }
     }
-    // Borders of the scratch fields.
+    // First and last bits of the scratch fields.
     cuts.extend(temporaries(layout).iter().flat_map(|field| {
         let first = usize::from(field.address);
         [first, first + usize::from(field.width)]
@@ -170,7 +171,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the scratch fields of the commands' programs, which have absolute addresses.
+/// Returns the fields that the commands' programs use in the scratch. Their addresses are absolute.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
@@ -186,7 +187,7 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Columns of the selected context's fields.
+/// Indices of the columns that hold the fields of the selected context.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
     /// First bit of the context in pixel memory.

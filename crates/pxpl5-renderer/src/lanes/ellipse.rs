@@ -1,19 +1,19 @@
-//! Bounds of the pixels that a sphere can touch.
+//! Bounds of the pixels that a sphere can cover.
 //!
-//! As for triangles, floating-point numbers, with a margin, only select the pixels to test.
+//! As for triangles, floating-point numbers with a margin only select the pixels to test.
 
 use pxpl5_wire::Quadratic;
 use std::ops::Range;
 
 const SIZE: usize = 128;
 const MARGIN: f64 = 1e-3;
-/// Share of a discriminant's terms that exceeds their rounding errors.
+/// Bound on the rounding errors of a discriminant, as a share of its terms.
 const ROUNDING: f64 = 1e-9;
 
-/// The pixels at which a quadratic, with the array's left top pixel as origin, can be positive.
+/// The pixels at which a quadratic can be positive. The quadratic's origin is the array's upper left pixel.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic that limits the columns of each row; `None` if rows are not limited.
+    /// The quadratic that limits the columns of each row. `None` if no row is limited.
     quadratic: Option<Quadratic>,
 }
 
@@ -23,7 +23,8 @@ impl Ellipse {
             return Self { rows: 0..SIZE, quadratic: None };
         }
         let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
-        // A row has pixels inside if the discriminant in x is positive. The discriminant is quadratic in y.
+        // A row has pixels inside if the discriminant of the quadratic in x is positive. As a function of y, the
+        // discriminant is a quadratic too.
         let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
         Self { rows, quadratic: Some(*q) }
     }
@@ -32,7 +33,7 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Returns the columns of a row that can be inside.
+    /// Returns the columns of a row at which the quadratic can be positive.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };
@@ -41,7 +42,8 @@ impl Ellipse {
     }
 }
 
-/// Returns the coefficients of x and of one in a row. The coefficient of x squared is the same in all rows.
+/// Returns the coefficient of x and the constant of a quadratic in one row. The coefficient of x squared is the same in
+/// all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;
@@ -56,8 +58,8 @@ fn stays_in_48_bits(q: &Quadratic) -> bool {
     (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
 }
 
-/// Returns the integers of the array between the zeros of `a t^2 + b t + c`, with a margin; all integers unless `a <
-/// 0`.
+/// Returns the integers in the array between the zeros of `a t^2 + b t + c`, with a margin. Unless `a < 0`, returns all
+/// integers in the array.
 #[inline(always)]
 fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if a >= 0.0 {
@@ -115,7 +117,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Uses coefficients of any size, so that many values exceed 48 bits in the array and wrap.
+    /// Uses coefficients of any size, so that many values in the array exceed 48 bits and wrap.
     #[test]
     fn quadratics_that_wrap_leave_no_pixel_out() {
         let mut random = Random::new(12);
@@ -139,8 +141,8 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Uses coefficients whose squares are rounded. Then rounding can cancel the difference that remains for a single
-    /// pixel or for the last row of a circle.
+    /// Uses coefficients whose squares are rounded. Where a circle has a single pixel or its last row, the difference
+    /// of the squares is small. Rounding can cancel this difference.
     #[test]
     fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);
@@ -158,7 +160,7 @@ mod tests {
         }
     }
 
-    /// Uses small integers, so that no row ends within the margin of a pixel.
+    /// Uses small integers, so that no row ends within the margin around a pixel.
     #[test]
     fn columns_end_where_the_ellipse_does() {
         let mut random = Random::new(10);

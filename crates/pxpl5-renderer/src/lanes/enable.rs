@@ -1,4 +1,4 @@
-//! The Enable register by values.
+//! The Enable register of the fast array.
 
 use crate::array::{EMPTY_PLANE, PIXELS, Plane};
 use std::ops::Range;
@@ -7,11 +7,11 @@ const WIDTH: usize = 128;
 
 /// One byte for each pixel: 255 if the pixel is enabled, else 0.
 ///
-/// The register tracks which rows may be non-zero, so that clearing it after a small primitive is cheap.
+/// The register remembers which rows can contain enabled pixels. So clearing it after a small primitive is fast.
 #[derive(Clone, Debug)]
 pub(super) struct Enable {
     pixels: Box<[u8; PIXELS]>,
-    /// Rows that may be non-zero.
+    /// Rows that can contain enabled pixels.
     used: Range<usize>,
 }
 
@@ -24,20 +24,20 @@ impl Enable {
         &self.pixels
     }
 
-    /// Returns all pixels for a change anywhere.
+    /// Returns all pixels, to change any of them.
     pub(super) fn pixels_mut(&mut self) -> &mut [u8; PIXELS] {
         self.used = 0..WIDTH;
         &mut self.pixels
     }
 
-    /// Disables all pixels, and returns them for changes in the given rows.
+    /// Disables all pixels, and returns them. The caller must change pixels only in the given rows.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;
         &mut self.pixels
     }
 
-    /// Returns the pixels for changes in the rows of the last call of [`Self::emptied`].
+    /// Returns all pixels. The caller must change pixels only in the rows of the last call of [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

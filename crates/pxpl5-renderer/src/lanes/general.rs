@@ -1,4 +1,4 @@
-//! The general path: any instruction, on all pixels, one field after the other.
+//! General path of the fast array: it executes any instruction on all pixels, one field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -7,13 +7,14 @@ use crate::isa::{ArithmeticOp, ArrayInstruction, ExpressionUse, Operand, Test};
 use pxpl5_wire::REGION_SIZE;
 
 impl Lanes {
-    /// Executes an instruction whose operands have been checked.
+    /// Executes an instruction. Its operands must have been checked.
     pub(super) fn instruction(
         &mut self,
         instruction: &ArrayInstruction,
         executed: &mut Executed,
     ) -> Result<(), FaultKind> {
-        // Instructions that change no field are handled here; the others by the functions for Enable and for fields.
+        // Instructions that change no field are executed here. The functions for Enable and for fields execute the
+        // others.
         match *instruction {
             ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -41,7 +42,7 @@ impl Lanes {
             ArrayInstruction::EnableNone => self.enable.fill(false),
             ArrayInstruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
             ArrayInstruction::EnableLoad(bit) => {
-                // Enable all pixels, then keep those whose bit is set.
+                // Enable all pixels, then disable those whose bit is not set.
                 self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
@@ -61,7 +62,8 @@ impl Lanes {
     }
 
     fn field_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
-        // Every operation reads its operands into buffers, computes 64-bit values, and stores their low bits.
+        // Every operation reads its operands into buffers, computes 64-bit values, and stores the low bits of these
+        // values.
         match *instruction {
             ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.map(destination, source, |v| values::shift_right(v, by, source.signed))
@@ -97,7 +99,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the first operand buffer in the enabled pixels.
+    /// Stores the first operand buffer in a field of the enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -120,8 +122,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results from `source` and the second operand buffer. The first goes to `destination`, the second to
-    /// `source`.
+    /// Computes two results from `source` and the second operand buffer. Stores the first result in `destination` and
+    /// the second result in `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -160,7 +162,7 @@ impl Lanes {
     fn evaluate(&mut self, local: &LocalExpression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         match *usage {
             ExpressionUse::DisableNegative => {
-                // The sign-extended value is negative exactly if the expression's last bit is set.
+                // The sign-extended value is negative exactly if the expression's highest bit is set.
                 self.expression(local, 0, |e, _, _| e);
                 for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
                     *enable &= if (*v as i64) < 0 { 0 } else { 255 };
@@ -194,7 +196,7 @@ impl Lanes {
         }
     }
 
-    /// Computes first buffer := f(expression, shift, second buffer) in all pixels.
+    /// Computes first buffer := f(expression, shift, second buffer) for every pixel.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -1,4 +1,5 @@
-//! Spheres and shading as whole commands, which are long enough to decode their words completely.
+//! Fast execution of spheres and shading. Each of these commands draws many pixels, so decoding all of its words costs
+//! little in comparison.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -11,7 +12,7 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns and shifts of a sphere in this layout.
+/// Columns and shifts with which a sphere is drawn in this layout.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -20,7 +21,8 @@ struct SpherePlace {
 }
 
 impl Lanes {
-    /// Executes a sphere or shading command of this layout at the start of `words`, and returns its length in words.
+    /// Executes the sphere or shading command at the start of `words`, and returns its length in words. Returns `None`
+    /// if the words are no such command of this layout.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,
@@ -29,7 +31,7 @@ impl Lanes {
         executed: &mut Executed,
     ) -> Option<usize> {
         let (command, used) = Command::decode(words, 0, &self.layout).ok()?;
-        // Enable must be computed only if a later command can read it.
+        // Compute Enable only if a later command can read it.
         let keep = !next_enables_all(words.get(used));
         match command {
             Command::Sphere(sphere) => self.sphere(&sphere, columns, keep)?,
@@ -43,9 +45,9 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns of a sphere, or `None` if depth and radicand have different widths.
+    /// Returns the columns for a sphere, or `None` if depth and radicand have different widths.
     ///
-    /// With different widths the program would leave a mixture of both in the scratch.
+    /// With different widths, the program would leave a mixture of depth and radicand in the scratch.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
@@ -107,7 +109,8 @@ impl Lanes {
         Some(())
     }
 
-    /// Latches the coefficients, moves the sphere to the region, and applies the shifts of this layout.
+    /// Stores the coefficients for a later reuse. Returns the sphere with the array's upper left pixel as origin, and
+    /// with shifts for this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {
@@ -121,7 +124,7 @@ impl Lanes {
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
         let f = ShadeFields::in_layout(&self.layout).ok()?;
         let [nx, ny, nz] = columns.normal?;
-        // Columns of the inputs, then of the results in the order of `ShadeAll::results`.
+        // Columns of the inputs, followed by columns of the results in the order of `ShadeAll::results`.
         let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];
         for (index, field) in indices[5..].iter_mut().zip(temporaries) {

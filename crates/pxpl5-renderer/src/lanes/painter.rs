@@ -1,4 +1,5 @@
-//! Steps common to triangles of any shape: expressions at the pixels of a vector, the depth test, and the stores.
+//! Steps common to triangles of all widths: values of expressions for a vector of pixels, the depth test, and the
+//! stores.
 
 use super::columns::Values;
 use super::enable::Enable;
@@ -6,7 +7,7 @@ use super::shape::Shape;
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Word};
 
-/// The values of a linear expression at the pixels of a vector, and the step to the next vector in the row.
+/// The values of a linear expression at the pixels of a vector, and the difference to the next vector in the row.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<V> {
     pub(super) value: V,
@@ -19,16 +20,16 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
-    /// Returns the values at the pixels of a vector of [fours](crate::simd::FOUR), whose first pixel has the value
-    /// `first`.
+    /// Returns the values at the pixels of a vector with groups of [four](crate::simd::FOUR) pixels. The first pixel
+    /// has the value `first`.
     ///
-    /// The step is 0, since such vectors do not advance along a row.
+    /// The difference to the next vector is 0, since such vectors do not advance along a row.
     #[inline(always)]
     pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values some rows below, which differ by `b`.
+    /// Returns the values for a vector some rows below. They are greater by `b`.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -40,17 +41,17 @@ impl<V: SimdVector> Walk<V> {
     }
 }
 
-/// The values that triangles store in the pixels that pass the depth test.
+/// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Sets the colour of the next triangle, if triangles have one.
+    /// Sets the colour of the next triangle. It is ignored if colours are interpolated.
     fn begin(&mut self, colour: Word);
-    /// Stores the pixels from index `at` on where the mask is true.
+    /// Stores values in the pixels of a vector for which `mask` is true. `at` is the index of the vector's first pixel.
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
-/// Draws triangles into a region.
+/// A painter that draws triangles into a region.
 pub(super) struct TrianglePainter<'a, P> {
-    /// Column and row of the picture at the array's left top pixel.
+    /// Picture coordinates (column and row) of the array's upper left pixel.
     pub(super) origin: [i32; 2],
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
@@ -58,7 +59,7 @@ pub(super) struct TrianglePainter<'a, P> {
     pub(super) enable: &'a mut Enable,
 }
 
-/// The result of the depth test of a vector of pixels.
+/// The result of the depth test for a vector of pixels.
 pub(super) struct DepthTest<V: SimdVector> {
     pub(super) old: V,
     pub(super) new: V,
@@ -66,7 +67,8 @@ pub(super) struct DepthTest<V: SimdVector> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Tests the pixels of a vector: passes if no edge is negative and the new depth is nearer.
+    /// Tests the pixels of a vector. A pixel passes if no edge is negative and its new depth is nearer than the stored
+    /// one.
     #[inline(always)]
     pub(super) fn test<V: SimdVector, S: Shape>(
         &self,

@@ -1,25 +1,26 @@
-//! Integer square roots and quotients from floating-point results, corrected to the exact integer.
+//! Integer square roots and quotients. They are computed in floating point, then corrected to the exact integer.
 //!
 //! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every host. All
-//! operands are exact in 24 bits.
+//! operands fit the 24 bits of a single-precision number, so they are exact.
 
-/// Returns the integer nearest to a number from 0 to 2^22. A conversion with `as` would check each lane for overflow.
+/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would be slower, since it checks each lane
+/// for overflow.
 #[inline(always)]
 fn nearest(v: f32) -> u32 {
     // Adding 2^23 leaves no fraction bits, so the mantissa holds the integer.
     (v + 8_388_608.0).to_bits() & 0x7f_ffff
 }
 
-/// Returns the floor of the square root of a 24-bit number.
+/// Returns the square root of a 24-bit number, rounded down.
 #[inline(always)]
 pub(super) fn square_root_24(v: u32) -> u32 {
     let root = nearest((v as i32 as f32).sqrt());
     root - u32::from(root * root > v)
 }
 
-/// Returns the quotient, of at most 10 bits, and the remainder of `a` (23 bits) by `b` (12 bits).
+/// Divides `a` (23 bits) by `b` (12 bits). Returns the quotient, limited to 10 bits, and the remainder.
 ///
-/// The quotient is limited to 1023, which is also the result of a division by 0.
+/// The quotient is at most 1023. A division by 0 gives 1023.
 #[inline(always)]
 pub(super) fn divide_10(a: u32, b: u32) -> (u32, u32) {
     let ratio = a as i32 as f32 / b.max(1) as i32 as f32;

@@ -1,7 +1,7 @@
-//! Shading by values, row by row.
+//! Fast shading, row by row.
 //!
-//! The code follows the program of [`crate::Shade`] instruction by instruction, so that its scratch fields also end
-//! with the same values.
+//! The code follows the program of [`crate::Shade`] instruction by instruction. So the scratch fields also end with the
+//! same values.
 
 use super::columns::Values;
 use super::roots::{divide_10, square_root_24};
@@ -14,14 +14,14 @@ const WIDTH: usize = 128;
 /// Number of result columns: colour, a, b, c, root, diffuse, specular.
 const RESULTS: usize = 7;
 
-/// Shading of all pixels whose depth is not that of the far plane.
+/// A kernel that shades all pixels whose depth differs from that of the far plane.
 pub(super) struct ShadeAll<'a> {
     pub(super) shade: Shade,
     pub(super) far: u32,
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Enable register to write, if a later instruction reads it.
+    /// Enable register, which is written. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -54,7 +54,7 @@ impl ShadeAll<'_> {
         let [x, y, z] = [self.row_of(0, at), self.row_of(1, at), self.row_of(2, at)];
         let mut colour = [0; WIDTH];
         colour.copy_from_slice(&self.results[0].0[at..at + WIDTH]);
-        // Shade all pixels, covered or not: a loop without branches is vectorized.
+        // Shade all pixels of the row, covered or not: a loop without branches is vectorized.
         for i in 0..WIDTH {
             let pixel = shade_pixel(&self.shade, [x[i], y[i], z[i]], colour[i]);
             out[0][i] = pixel[0];
@@ -74,7 +74,7 @@ impl ShadeAll<'_> {
         }
     }
 
-    /// Returns one component of the normals of a row.
+    /// Returns one component of the normals of a row's pixels.
     #[inline(always)]
     fn row_of(&self, component: usize, at: usize) -> [i32; WIDTH] {
         let mut out = [0; WIDTH];
@@ -90,7 +90,7 @@ const fn twelve(v: i16) -> i32 {
     (v as i32) << 20 >> 20
 }
 
-/// Replaces the low `width` bits of `old` by those of `low`.
+/// Returns `old` with its low `width` bits replaced by those of `low`.
 #[inline(always)]
 const fn insert(old: u32, low: u32, width: u32) -> u32 {
     let mask = (1 << width) - 1;
@@ -103,11 +103,11 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     let root = square_root_24(square);
     let (diffuse, _) = cosine(shade.light, n, root);
     let (specular, c) = cosine(shade.half, n, root);
-    // The root leaves its remainder in `a`; the cosines leave a product in `b`.
+    // The remainder of the root stays in `a`. A product of the cosines stays in `b`.
     let mut a = square - root * root;
     let mut b = (n[2] * twelve(shade.half[2])) as u32 & 0xff_ffff;
     let mut highlight = specular;
-    // Squares alternate between `a` and `b`, of which they replace only the low bits.
+    // The squares go alternately to `a` and `b`. They replace only the low bits of these fields.
     for i in 0..SPECULAR_SQUARINGS {
         let square = highlight * highlight;
         highlight = square >> 10;
@@ -117,11 +117,11 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
             b = insert(b, square, 20);
         }
     }
-    // Light on the object's colour.
+    // Brightness of the object's colour.
     let light = diffuse * u32::from(shade.diffuse) + (u32::from(shade.ambient) << 10);
     b = insert(b, light, 19);
     let light = (light >> 10).min(255);
-    // White of the highlight.
+    // Brightness of the white highlight.
     let shine = highlight * u32::from(shade.specular);
     let c = insert(c, shine, 18);
     let mut rgb = 0;
@@ -138,7 +138,7 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// Returns the limited cosine and the remaining content of field `c`: the remainder below the sign of the product.
+/// Returns the limited cosine, and the final content of the field `c`: the remainder, below the sign of the product.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);

@@ -1,16 +1,16 @@
-//! Arrangements of a vector's pixels in the array.
+//! Arrangements in the array of the pixels that one vector holds.
 
 use super::columns::Values;
 use crate::simd::SimdVector;
 
-/// An arrangement of a vector's pixels, relative to the first pixel.
+/// An arrangement in the array of a vector's pixels, relative to the first pixel.
 pub(super) trait Shape {
     fn load<V: SimdVector>(column: &Values, at: usize) -> V;
-    /// Overwrites the pixels where the mask is true; `old` is their current content.
+    /// Overwrites the pixels for which the mask is true. `old` must be the current content of the pixels.
     fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
 }
 
-/// Pixels of a vector side by side in one row.
+/// Arrangement of a vector's pixels side by side in one row.
 pub(super) struct SingleRow;
 
 impl Shape for SingleRow {
@@ -25,7 +25,7 @@ impl Shape for SingleRow {
     }
 }
 
-/// Pixels of a vector in groups of four: each group lies below the previous one.
+/// Arrangement of a vector's pixels in groups of four. Each group lies one row below the previous group.
 pub(super) struct QuadRows;
 
 impl Shape for QuadRows {

@@ -1,7 +1,7 @@
-//! Triangles of at most four columns, which are most triangles of a dense scene.
+//! Fast drawing of triangles of at most four columns. In a dense scene, most triangles are so slim.
 //!
-//! A vector covers four columns of several rows, so that one vector holds nearly all such triangles. The values at
-//! their first pixels are computed for all triangles at once.
+//! A vector covers four columns of several rows. So one vector holds nearly every slim triangle. The values at the
+//! first pixels are computed for all triangles of a batch at once.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
@@ -14,12 +14,13 @@ const WIDTH: i32 = 128;
 
 /// The slim triangles of a batch.
 pub(super) struct SlimTriangles {
-    /// First column, moved left if needed so that all vectors lie in the array.
+    /// First column of each triangle's vectors. If needed, it is moved left so that the vectors lie inside the array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors below each other: 0 for a triangle without pixels, -1 for a triangle that is not slim.
+    /// Number of vectors for each triangle, one below the other. It is 0 for a triangle without pixels, and -1 for a
+    /// triangle that is not slim.
     vectors: PerTriangle<i32>,
-    /// Values of the edges at the first column and row.
+    /// Values of each triangle's edges at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
     planes: [PerTriangle<i32>; 4],
 }
@@ -27,8 +28,8 @@ pub(super) struct SlimTriangles {
 impl SlimTriangles {
     /// Finds the slim triangles of a batch.
     ///
-    /// The edges have the array's left top pixel as origin. The planes have the picture's origin; `left` and `top` are
-    /// the picture position of the array.
+    /// The edges have the array's upper left pixel as origin. The planes have the picture's upper left pixel as origin.
+    /// `left` and `top` are the picture coordinates of the array's upper left pixel.
     #[inline(always)]
     pub(super) fn among<V: SimdVector>(
         boxes: &Boxes,
@@ -57,20 +58,20 @@ impl SlimTriangles {
             let columns = boxes.x[1][i] - boxes.x[0][i] + 1;
             let rows = (boxes.y[1][i] - boxes.y[0][i] + 1).max(0);
             let vectors = (rows + tall - 1) / tall;
-            // Move the vectors left and up where they would end outside the array.
+            // If a vector would end outside the array, move it left or up.
             all.x[i] = boxes.x[0][i].min(WIDTH - FOUR as i32);
             all.y[i] = boxes.y[0][i].min(WIDTH - tall * vectors);
             let held = if columns > 0 { vectors } else { 0 };
             all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
         }
-        // A separate loop, so that both are vectorized.
+        // A separate loop, so that this loop and the one above are both vectorized.
         for i in 0..LANES {
             all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
         }
         all
     }
 
-    /// Returns true if triangle `i` is slim.
+    /// Returns true if triangle `i` of the batch is slim.
     #[inline(always)]
     pub(super) const fn has(&self, i: usize) -> bool {
         self.vectors[i] >= 0
@@ -114,7 +115,8 @@ impl SlimTriangles {
     }
 }
 
-/// Returns each triangle's expression at its pixel. A separate array tells the compiler that nothing else changes.
+/// Returns the value of each triangle's expression at the pixel (x, y) of this triangle. The result is a new array, so
+/// the compiler knows that no other data changes.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];
@@ -133,7 +135,8 @@ fn moved(places: &PerTriangle<i32>, by: i32) -> PerTriangle<i32> {
     all
 }
 
-/// Returns triangle `i`'s expression `down` rows below its first pixel.
+/// Returns the values of triangle `i`'s expression for a vector. Its first pixel is `down` rows below the pixel at
+/// which the value is `first`.
 #[inline(always)]
 fn walk<V: SimdVector>(e: &LinearLanes, first: i32, i: usize, down: usize) -> Walk<V> {
     Walk::fours(first.wrapping_add(e.b[i].wrapping_mul(down as i32)), e.a[i], e.b[i])

@@ -1,4 +1,4 @@
-//! Spheres by values, row by row.
+//! Fast drawing of spheres, row by row.
 
 use super::columns::Values;
 use super::ellipse::{Ellipse, along_row};
@@ -12,26 +12,27 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 
 const WIDTH: usize = 128;
 
-/// A sphere to draw, with the array's left top pixel as origin.
+/// A sphere to draw. Its expressions have the array's upper left pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
-    /// Silhouette and depth, with shifts for the layout's root width.
+    /// Silhouette and depth of the sphere. The shifts are those for the layout's width of roots.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Scratch fields of the program, which must end with the program's values.
+    /// Scratch field of the roots. At the end, it must hold the same values as after the command's program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
-    /// Enable register to write, if a later instruction reads it; all zero on entry.
+    /// Enable register, all zero at the start. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
 /// The values that a sphere stores in the pixels that pass the depth test.
 pub(super) trait PaintSphere {
-    /// Stores the pixels from column `left` of row `y` where `pass` is all ones.
+    /// Stores values in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
-    /// `temporary` holds the new depths, and receives the values that the program leaves in their place.
+    /// At the start, `temporary` holds the new depths. At the end, it holds the values that the command's program
+    /// leaves in this field.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
@@ -59,7 +60,7 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         let at = y * WIDTH + left;
         let new = &mut [0; WIDTH][..n];
         let pass = &mut [0; WIDTH][..n];
-        // Depth test, with the depth of the plane minus the root.
+        // Depth test. The new depth is the depth of the plane minus the root.
         let first = self.body.depth.at(left as i32, y as i32);
         let z = &mut self.z.0[at..at + n];
         for i in 0..n {
@@ -78,7 +79,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette, and the square roots of its used bits.
+    /// Computes a mask of the pixels inside the silhouette. Also computes the square root of the silhouette's used bits
+    /// at each pixel.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);
@@ -121,7 +123,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
-                // The product of the upper root bits and the factor, as the program's multiplication leaves it.
+                // The product of the root's upper bits and the factor, as the program's multiplication leaves it.
                 let upper = (roots[i] >> (self.root_bits - 8)) as i32;
                 let low = upper * i32::from(factor);
                 let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;
@@ -131,7 +133,7 @@ impl PaintSphere for PaintGouraudSphere<'_> {
             }
         }
         let at = y * WIDTH + left;
-        // Store colours, then the product that replaces the low bits of the new depth in the scratch.
+        // Store the colours. Then store the product, which replaces the low bits of the new depth in the scratch.
         blend(&mut self.colour.0[at..at + n], &rgb[..n], pass);
         for i in 0..n {
             let after = temporary[i] & !0x3_ffff | product[i];

@@ -1,21 +1,21 @@
-//! Templates that recognize commands in the word stream.
+//! Templates with which the fast array recognizes commands in the stream of words.
 
 use crate::command::{Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// A template of a command of `N` words whose operands are whole words: it compares the other words.
+/// A template of a command of `N` words. Each operand takes a whole word. The template compares all other words.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
-    /// Comparison mask: all ones for a word that is no operand, else zero.
+    /// Comparison mask for each word: all ones for a word that is no operand, else zero.
     fixed: [Word; N],
     pub(super) cost: CommandCost,
 }
 
 impl<const N: usize> Template<N> {
-    /// Creates the template of a command; `None` if the layout cannot hold the command.
+    /// Creates the template of a command, or returns `None` if the layout does not support the command.
     fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
         let mut words = Vec::new();
@@ -27,7 +27,7 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// Returns the command at the start of `words`, if it matches, and the words after it.
+    /// Returns the command at the start of `words`, and the words after it. Returns `None` if the words do not match.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
@@ -44,7 +44,7 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// Templates and costs of all commands that are executed as a whole.
+/// Templates and clocks of all commands that are executed as a whole.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
@@ -55,7 +55,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// Instructions and clocks that a command adds to [`crate::Executed`].
+/// Numbers of instructions and clocks by which a command increases [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,
@@ -88,7 +88,8 @@ impl Templates {
     }
 }
 
-/// Returns true if the next instruction is *enable all*, with any label. Then the current Enable is never read.
+/// Returns true if the next instruction is *enable all*, with any label. If it is, no instruction reads the current
+/// Enable.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

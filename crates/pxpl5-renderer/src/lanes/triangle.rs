@@ -1,4 +1,4 @@
-//! Triangles by values: a vector of pixels at a time, with masks instead of branches.
+//! Fast drawing of triangles: a vector of pixels at a time, with masks instead of branches.
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
@@ -14,10 +14,10 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// A linear expression that can start at any pixel of the array.
+/// A linear expression that can be evaluated for a vector at any pixel of the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
-    /// Values at the array's first pixels.
+    /// Values at the first pixels of the array's top row, one for each lane.
     begin: V,
     step: V,
     a: i32,
@@ -25,7 +25,7 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// Prepares an expression. `left` and `top` are its coordinates of the array's first pixel.
+    /// Prepares an expression. `left` and `top` are the picture coordinates of the array's upper left pixel.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
@@ -39,32 +39,33 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// A triangle whose rows begin at different columns.
+/// The expressions of a triangle that is wider than one vector. Its rows can begin at different columns.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
     components: [Slope<V>; 3],
 }
 
-/// All consecutive triangles of one kind at the start of `words`. The result is their number.
+/// A kernel that draws the consecutive triangles of one kind at the start of `words`, and returns their number.
 pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) words: &'a [Word],
     pub(super) template: &'a Template<N>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// A batch of triangles without command words. Enable keeps its value, since the next command sets it before any read.
+/// A kernel that draws a batch of triangles without command words. It leaves Enable unchanged, since the next command
+/// overwrites Enable before any command reads it.
 pub(super) struct DrawBatch<'a, P> {
     pub(super) batch: &'a TriangleBatch<'a>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle, which are read only if needed. Expressions have the
-/// picture's origin.
+/// Access to the depth, components and colour of a triangle, which are read only if needed. Expressions refer to the
+/// picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the object's colour; meaningless for triangles without one.
+    /// Returns the object's colour. The result is meaningless for a triangle with interpolated colour.
     fn colour(&self) -> Word;
 }
 
@@ -80,7 +81,7 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Returns the last word, which is the colour in commands that have one.
+    /// Returns the command's last word. In commands for Phong triangles it is the colour.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
@@ -111,12 +112,12 @@ impl Surface for BatchSurface<'_> {
     }
 }
 
-/// A triangle being drawn.
+/// A triangle that is being drawn.
 struct CurrentTriangle<S> {
-    /// Edges with the array's left top pixel as origin.
+    /// Edge expressions relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads Enable.
+    /// True if a later command reads the Enable values that this triangle leaves.
     keep: bool,
 }
 
@@ -127,7 +128,7 @@ impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> 
     fn run<V: SimdVector>(mut self) -> usize {
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
-        // Every triangle except the last is followed by another one, which sets Enable anew.
+        // After every triangle except the last, the next triangle sets Enable anew.
         let read_later = !next_enables_all(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(LANES) {
@@ -154,7 +155,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
-        // Slim triangles have a path of their own, with the whole triangle in one or a few vectors.
+        // Slim triangles are drawn by their own code, with the whole triangle in one or a few vectors.
         let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
             if slim.has(i) {
@@ -169,7 +170,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Draws triangle `i` of the batch with these boxes.
+    /// Draws triangle `i` of a batch. `boxes` are the bounding boxes of the batch.
     #[inline(always)]
     fn triangle<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, boxes: &Boxes, i: usize) {
         let bounds = boxes.bounds(i, &triangle.edges);
@@ -195,7 +196,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Returns the expressions from which each row of a wide triangle starts.
+    /// Prepares the expressions of a wide triangle, so that each row can start at any column.
     #[inline(always)]
     fn wide<V: SimdVector, S: Surface>(&self, triangle: &CurrentTriangle<S>) -> WideTriangle<V> {
         let [left, top] = self.origin;
@@ -211,7 +212,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Returns the values of an expression, which has the picture's origin, at a pixel of the array.
+    /// Returns the values of an expression at pixel (x, y) of the array. The expression refers to the picture's upper
+    /// left pixel.
     #[inline(always)]
     fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
@@ -224,9 +226,9 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         [self.walk(&p, x, y), self.walk(&q, x, y), self.walk(&r, x, y)]
     }
 
-    /// Draws a triangle that fits in one vector per row, from column `x`.
+    /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
     ///
-    /// Two rows are done at a time: an unpredictable branch costs more than a row outside the triangle.
+    /// It draws two rows at a time. A mispredicted branch costs more time than a row outside the triangle.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -298,7 +300,8 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Reads the edges of some commands. Not inlined, since inlining would assemble the vectors number by number.
+/// Reads the edges of several commands. It must not be inlined: the compiler would then assemble the vectors from
+/// single numbers.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {
@@ -307,8 +310,8 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Returns the first column of one vector that holds all columns, a multiple of its lanes if possible. Returns `None`
-/// if the columns are too many.
+/// Returns a first column from which one vector covers all columns. If possible, the column is a multiple of the
+/// vector's lanes. Returns `None` if one vector is too short.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
@@ -322,8 +325,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the starts of three expressions. Written out, since a closure would be compiled without the vector unit's
-/// features.
+/// Returns the start values of three expressions. The three calls are written out. The compiler would not use the
+/// vector unit in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;
@@ -337,7 +340,7 @@ fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask,
     S::store(new, mask, old, column, at);
 }
 
-/// Stores interpolated colour as 0x00RRGGBB.
+/// Stores interpolated colours as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
@@ -348,7 +351,7 @@ impl PaintTriangle for PaintGouraud<'_> {
 
     #[inline(always)]
     fn store<V: SimdVector, S: Shape>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
-        // Each component moves to its place in one shift.
+        // One shift moves each component to its bits in the word.
         let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
         let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
         let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(V::splat(0xff));

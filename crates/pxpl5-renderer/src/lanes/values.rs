@@ -1,13 +1,13 @@
-//! Operations on values: 64-bit words that hold a field, extended by its signedness.
+//! Operations on values, which are fields extended to 64 bits, by the sign if the field is signed.
 
 use crate::isa::{ArithmeticOp, Test};
 
-/// Returns the low `width` bits.
+/// Returns the low `width` bits of a value.
 pub(super) const fn low(value: u64, width: usize) -> u64 {
     value & (u64::MAX >> (64 - width))
 }
 
-/// Computes a op b, not yet cut to the destination's width. Division has its own function, [`divide`].
+/// Computes a op b, without limiting the result to the destination's width. The function [`divide`] computes divisions.
 pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 {
     match op {
         ArithmeticOp::Add => a.wrapping_add(b),
@@ -24,12 +24,13 @@ pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 
     }
 }
 
-/// Returns true if a < b, as two's complement or unsigned numbers.
+/// Returns true if a < b. Both are compared as two's complement numbers if `signed` is true, otherwise as unsigned
+/// numbers.
 pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }
 
-/// Returns true if the test of a and b is true.
+/// Returns true if the comparison `test` of a with b is true.
 pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
     match test {
         Test::Less => less(a, b, signed),
@@ -39,24 +40,25 @@ pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
     }
 }
 
-/// Returns the quotient of at most `width` bits and the remainder a - quotient b. Division by zero gives all ones.
+/// Returns the quotient, limited to `width` bits, and the remainder a - quotient * b. For b = 0, all bits of the
+/// quotient are ones.
 pub(super) fn divide(a: u64, b: u64, width: usize) -> (u64, u64) {
     let largest = u64::MAX >> (64 - width);
     let quotient = a.checked_div(b).unwrap_or(largest).min(largest);
     (quotient, a - quotient.wrapping_mul(b))
 }
 
-/// Limits a value to 0 .. 2^width - 1.
+/// Limits a value to the range 0 .. 2^width - 1.
 pub(super) fn saturate(value: u64, signed: bool, width: usize) -> u64 {
     if signed && (value as i64) < 0 { 0 } else { value.min(u64::MAX >> (64 - width)) }
 }
 
-/// Shifts a value right; a signed value is filled by its sign.
+/// Shifts a value right. A signed value is filled with copies of its sign, an unsigned value with zeros.
 pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
     if signed { (value as i64 >> by) as u64 } else { value >> by }
 }
 
-/// Extends the low `width` bits by their sign or by zeros.
+/// Extends the low `width` bits to 64 bits, by their sign if `signed` is true, otherwise by zeros.
 pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
     let unused = 64 - width;
     if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }

@@ -1,4 +1,4 @@
-//! Recognition of whole commands in the word stream.
+//! Fast execution of whole commands that are recognized in the stream of words.
 
 use super::Lanes;
 use super::columns::{ContextColumns, Values};
@@ -13,9 +13,11 @@ use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::{Linear, TriangleBatch, Word};
 
 impl Lanes {
-    /// Executes the command of this layout at the start of `words`, and returns its length in words.
+    /// Executes the command at the start of `words`, and returns its length in words. Returns `None` if the words are
+    /// not a command of this layout.
     ///
-    /// For a triangle, the consecutive triangles of the same kind are executed with it.
+    /// If the command is a triangle, the triangles of the same kind that directly follow it are executed too. The
+    /// length includes them.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;
@@ -31,7 +33,7 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns of the selected context, which are cached until another context is selected.
+    /// Returns the columns of the selected context. They are cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -50,7 +52,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns of x, y and z of the selected context's normal; `None` if the layout has no normals.
+    /// Returns the columns that hold x, y and z of the selected context's normals. Returns `None` if the layout has no
+    /// normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -58,13 +61,14 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the column that holds exactly this field.
+    /// Returns the index of the column that holds exactly this field, or `None` if there is no such column.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
-    /// Executes a clear. Its depth is an operand too: words that are no [`crate::Clear`] may clear to any depth.
+    /// Executes a clear. It reads the depth from the words, since words can also clear Z to a depth other than that of
+    /// [`crate::Clear`].
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -116,14 +120,14 @@ impl Lanes {
         Some((template.cost, drawn))
     }
 
-    /// Draws triangles like their commands, except for Enable and the latched coefficients. Returns `None` if this
-    /// layout lacks the command.
+    /// Draws a batch of triangles like the corresponding commands. Enable and the stored coefficients can differ
+    /// afterwards. Returns `None` if the layout does not support the command.
     pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
         let columns = self.context_columns()?;
         let origin = self.controller.origin();
         let z_shift = self.layout.z_shift();
         let enable = &mut self.enable;
-        // Without colours the planes are those of a Gouraud triangle.
+        // A batch without colours holds Gouraud triangles, so its planes are colours.
         if batch.colours.is_none() {
             self.templates.triangle.as_ref()?;
             let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
@@ -141,7 +145,8 @@ impl Lanes {
     }
 }
 
-/// Returns the position of the last coefficients of the last command; `None` if there are no commands.
+/// Returns the word position of the last coefficients in the last of some commands. Returns `None` if there are no
+/// commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }

@@ -1,11 +1,12 @@
-//! Vectors of WebAssembly: two of 128 bits, to give the eight lanes of AVX2.
+//! Vectors of WebAssembly. Two vectors of 128 bits together have eight lanes, as many as an AVX2 vector.
 //!
-//! SAFETY of every block: loads and stores go through slices of checked length. WebAssembly allows any alignment.
+//! SAFETY of every `unsafe` block in this file: loads and stores go through slices whose length is checked. WebAssembly
+//! allows any alignment.
 
 use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
-/// Eight lanes; the first four are in the first half.
+/// Eight lanes; the first vector holds the first four.
 #[derive(Clone, Copy)]
 pub(super) struct Simd128([v128; 2]);
 
@@ -107,7 +108,7 @@ impl SimdVector for Simd128 {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // The unit's own shift takes the count modulo 32.
+        // The vector unit's own shift takes the count modulo 32.
         if by < 32 { self.map(|v| u32x4_shr(v, by)) } else { Self::splat(0) }
     }
 

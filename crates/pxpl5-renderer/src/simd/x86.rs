@@ -1,7 +1,8 @@
 //! Vectors of x86-64.
 //!
-//! SAFETY of every block: values of these types exist only in [`super::avx2`] and [`super::avx512`], where the features
-//! are present. Loads and stores go through slices of checked length.
+//! SAFETY of every `unsafe` block in this file: values of these types exist only inside [`super::avx2`] and
+//! [`super::avx512`]. These functions run only on processors with the required features. Loads and stores go through
+//! slices whose length is checked.
 
 use super::{FOUR, ROW, SimdVector};
 use std::arch::x86_64::*;
