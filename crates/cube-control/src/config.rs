@@ -10,13 +10,13 @@ use std::sync::Arc;
 /// The boards that run Cube control, and the kind of faces they draw.
 #[derive(Clone, Debug)]
 pub struct CubeControlConfig {
-    /// Port of the host interface, which sends updates.
+    /// Node of the host interface, which sends updates.
     pub host: NodeId,
-    /// Port of the GP that starts every stage.
+    /// Node of the master GP, which begins every stage.
     pub master: NodeId,
-    /// Ports of the slave GPs, at least one.
+    /// Nodes of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Ports of the renderers, at least one.
+    /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
     /// Format and destination of the faces.
     pub faces: Faces,

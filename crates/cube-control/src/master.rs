@@ -191,7 +191,7 @@ impl CubeMaster {
         self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
-    /// Begins RENDER of the next update if the rules permit it, with its regions sorted by weight.
+    /// Begins RENDER of the next update if the rules permit it. Sorts the update's regions by weight, heaviest first.
     fn begin_render(&mut self) {
         let number = PictureNumber(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(number) {

@@ -18,7 +18,7 @@ pub struct Corner {
 /// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drawing {
-    /// Number of triangles passed to the drawing.
+    /// Number of triangles given to the drawing.
     pub triangles: u64,
     /// Sum, over all triangles, of the number of faces that the triangle can touch. A real machine transforms a
     /// triangle once for each of these faces.

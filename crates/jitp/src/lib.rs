@@ -32,7 +32,7 @@
 //! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order to a slave contains
 //!   the newest view, and the blocks are shown at once.
 //!
-//! The reference picture, in which each pixel is drawn for its own time, is computed by another crate.
+//! The reference picture, in which each pixel is drawn for its own time, is not part of this firmware.
 //!
 //! If the boards run i860 code, all steps are such code ([`pphigs`]):
 //!

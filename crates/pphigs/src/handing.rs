@@ -1,5 +1,5 @@
-//! Handover of a region's bin to the next processor, as work of a board. The code lists the messages of the region's
-//! commands as pieces of memory.
+//! Handover of a region's bin to the ring, as work of a board. The code lists the messages of the region's commands as
+//! pieces of memory.
 //!
 //! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
 //! where they are in memory. By the timing table each entry takes `token_entry_ns`.

@@ -68,7 +68,7 @@ pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
 pub(crate) const MOST_VIEWS: u32 = 6;
 /// Address of the start and end addresses of all bins, in both contexts. The code that hands over a region reads them.
 const BINS: u32 = 0x1_2F00;
-/// Bytes of the bin bounds of one context: one word about its spheres, and two addresses for each region.
+/// Bytes of the bin bounds of one context: the address of its first sphere command, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
 /// Address of the parameter block for the code that hands over a region.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;

@@ -28,7 +28,7 @@ parameters::parameter_table! {
 }
 
 impl PriorityTiming {
-    /// Checks all parameters against their limits, and the falloff against the side of a cell.
+    /// Checks that all parameters are within their limits, and that the falloff is not longer than the side of a cell.
     ///
     /// # Errors
     ///

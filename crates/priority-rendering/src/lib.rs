@@ -38,7 +38,7 @@
 //!
 //! # Not here
 //!
-//! The pipeline crate adds the faces, their source, and the treatment of late updates.
+//! The faces, their source, and the treatment of late updates belong to the pipeline that draws.
 //!
 //! # Sources
 //!

@@ -30,7 +30,7 @@ pub enum Translation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SizeRule {
-    /// The size of a disc perpendicular to the line of sight.
+    /// The angle of a disc perpendicular to the line of sight.
     #[default]
     Disc,
     /// The angle of the bounding sphere's outline.

@@ -6,7 +6,7 @@ use slats::CLUMP;
 
 /// Computes TRANSFORM and RENDER of all clumps of a field.
 ///
-/// Returns two times: when the last clump was accepted, and when the processor had begun to send it.
+/// Returns two times: when the last clump was accepted, and when the processor had handed it over for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],

@@ -81,9 +81,9 @@ struct Ports<const N: usize> {
 
 /// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
 ///
-/// The renderer that is ready first goes first; among equals, the renderer with the lowest index. After its last copy,
-/// a renderer is free. As long as the same renderer is first in all configurations, all lanes are computed by the same
-/// steps.
+/// The renderer that is ready first goes first; among equals, the renderer with the lowest index. The renderer's free
+/// time becomes the end of its last copy. As long as the same renderer is first in all configurations, all lanes are
+/// computed by the same steps.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],

@@ -39,7 +39,7 @@ pub struct StereoModel {
     fifo_words: f64,
     store_ns: f64,
     backing_regions: usize,
-    /// Number of finished regions that a renderer can store while the frame buffer still shows the frame before.
+    /// Number of finished regions that a renderer can store while their frame buffer is not available.
     regions_stored: usize,
     field_ns: f64,
     /// Time of each region's messages at a frame-buffer port, in nanoseconds.

@@ -158,8 +158,8 @@ fn fields_needed(experiment: &Experiment) -> Option<u64> {
 
 /// Returns the model of an experiment and the times of a field in the steady state.
 ///
-/// If every triangle is sent to all regions, all full clumps are equal, so their mean is exact. Otherwise each clump is
-/// computed for the first view.
+/// If all clumps of a GP are equal, the field's times follow exactly from their mean. Otherwise each clump is computed
+/// for the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();

@@ -39,7 +39,7 @@ pub async fn host(
         let sent = gp.send_batch(batch).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, frame, None);
-        // The next SEND may not begin before these edits are applied.
+        // The next SEND must not begin before these edits are applied.
         let received = gp.receive().await;
         if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
             return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });
