@@ -1,4 +1,4 @@
-//! Configuration of the boards and of the faces they draw.
+//! Configuration of Cube control: the boards, and the faces that they draw.
 
 use crate::update::FaceUpdate;
 use crate::warped_lists::WarpedLists;
@@ -10,28 +10,28 @@ use std::sync::Arc;
 /// The boards that run Cube control, and the kind of faces they draw.
 #[derive(Clone, Debug)]
 pub struct CubeControlConfig {
-    /// Port of the host interface, which sends updates.
+    /// Node of the host interface, which sends updates.
     pub host: NodeId,
-    /// Port of the GP that starts every stage.
+    /// Node of the master GP, which begins every stage.
     pub master: NodeId,
-    /// Ports of the slave GPs, at least one.
+    /// Nodes of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Ports of the renderers, at least one.
+    /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
     /// Format and destination of the faces.
     pub faces: Faces,
-    /// Display lists of warped updates, shared by all slaves. Empty at first.
+    /// Cache of warped display lists, shared by all slaves. Empty at first.
     pub warped: WarpedLists,
 }
 
-/// Format of the faces in a display's memories.
+/// Format of the faces in the memories of a display.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Port of each display memory.
+    /// Node of each display memory.
     pub memories: Vec<NodeId>,
     /// Viewport and shading of each face.
     pub picture: Picture,
-    /// The parts of a texel that are copied to a memory.
+    /// Contents of a texel that are copied to a memory, such as colour and depth.
     pub content: CopyContent,
 }
 
@@ -42,7 +42,7 @@ impl Faces {
         self.picture.viewport.grid().width
     }
 
-    /// Returns the grid of all six faces, one below the other.
+    /// Returns the region grid of all six faces, one face below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
@@ -52,19 +52,19 @@ impl Faces {
         self.picture.viewport.grid().regions() as u16
     }
 
-    /// Returns the number of regions of all six faces.
+    /// Returns the number of regions of all six faces together.
     #[must_use]
     pub const fn regions(&self) -> u16 {
         self.face_regions() * CubeFace::ALL.len() as u16
     }
 
-    /// Returns the face of a region, and the number of the region within this face.
+    /// Returns the face that contains a region, and the index of the region within this face.
     #[must_use]
     pub const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
         ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
     }
 
-    /// Returns the destination of an update's region.
+    /// Returns the destination of a region of an update in a display memory.
     #[must_use]
     pub fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
         CopyTarget {
@@ -79,7 +79,7 @@ impl Faces {
 }
 
 impl CubeControlConfig {
-    /// Returns the primitives that slave `index` holds.
+    /// Returns the share of the primitives that the slave with index `index` holds.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

@@ -1,4 +1,4 @@
-//! TRANSFORM for six faces.
+//! TRANSFORM of an update for the six faces of a cube.
 
 use crate::config::CubeControlConfig;
 use crate::update::FaceUpdate;
@@ -11,9 +11,10 @@ use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view through a face: the view of an eye in its initial orientation, rotated to the face's axes.
+/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation;
+/// the function rotates it to the axes of the face.
 ///
-/// Structures fixed to the head are placed as for a head in its initial orientation.
+/// Structures that are fixed to the head are drawn as for a head in its initial orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -31,22 +32,22 @@ fn to_face(face: CubeFace) -> Mat4 {
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update: for each region of six faces, the screen primitives of one slave that touch it.
+/// Bins of an update: the primitives of one slave that touch each region of the six faces.
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,
     /// Bin context of the update, 0 or 1.
     context: u8,
     faces: Vec<Arc<Pass>>,
-    /// Cost of beginning the pass: the structures of the update, for each face.
+    /// Counted work at the beginning of the pass: the structures of the update are placed once for each face.
     begin: TransformCost,
     transformed: PrimitiveCounts,
 }
 
 impl CubePass {
-    /// Transforms the primitives of a share that the update's memory holds, for six faces.
+    /// Transforms those primitives of a share that the update's display memory holds, for all six faces.
     ///
-    /// Vertices have the positions of [`CubePass::placed`].
+    /// Vertices have the positions of the list that [`CubePass::placed`] returns.
     #[must_use]
     pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
         let ahead = update.view.eyes.first();
@@ -67,7 +68,7 @@ impl CubePass {
         Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
     }
 
-    /// Returns the share with the vertices moved as the update demands.
+    /// Returns the share with displaced vertices, if the update warps them. Otherwise returns the share unchanged.
     #[must_use]
     pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
         if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
@@ -83,7 +84,7 @@ impl CubePass {
         self.faces.get(face)
     }
 
-    /// Returns the number of entries in each region's bin, in the order of all six faces.
+    /// Returns the number of entries in each region's bin. Regions are counted through all six faces.
     #[must_use]
     pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
         let entries = |region: RegionId| {
@@ -93,9 +94,9 @@ impl CubePass {
         (0..config.faces.regions()).map(|region| entries(RegionId(region))).collect()
     }
 
-    /// Returns the numbers of transformed primitives.
+    /// Returns the numbers of transformations of triangles and of spheres.
     ///
-    /// A primitive counts once for each face that it touches, and once if it touches none.
+    /// A primitive is counted once for each face that it touches. A primitive that touches no face is counted once.
     #[must_use]
     pub const fn transformed(&self) -> PrimitiveCounts {
         self.transformed
@@ -119,8 +120,8 @@ pub(crate) const fn context_of(update: PictureNumber) -> usize {
     (update.0 % 2) as usize
 }
 
-/// Returns the number of transformations of a kind of primitive (0 for triangles, 1 for spheres), of which `held` are
-/// held.
+/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1). `held` is the
+/// number of these primitives in the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -129,9 +130,9 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubePass {
-    /// Returns the time by the table.
+    /// Returns the TRANSFORM time by the timing table.
     ///
-    /// It covers the structures for each face, each primitive once per face that it touches, and each bin entry.
+    /// It covers the structures for each face, each primitive once for each face that it touches, and each bin entry.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

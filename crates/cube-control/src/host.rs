@@ -1,4 +1,4 @@
-//! The host program: choice of the next update, and SEND.
+//! Program of the host: it chooses the next update and performs SEND.
 
 use crate::config::CubeControlConfig;
 use crate::protocol::UpdateOrder;
@@ -7,21 +7,21 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// The host's next action when it is ready for an update.
+/// Action that the host takes when it is ready for an update.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HostAction {
     /// Send this update now.
     Send(FaceUpdate),
-    /// Call the plan again at this instant.
+    /// Call the function `plan` again at this time.
     Wait(Time),
     /// Send no more updates.
     Nothing,
 }
 
-/// Runs the host program, which sends updates over the link and the ring to all GPs.
+/// Runs the host program, which sends updates over the host's link and the ring to all GPs.
 ///
-/// SEND of an update begins after EDIT of the previous update has finished (TR94). `plan` is called with the number of
-/// the next update whenever the host is ready, in the order of time.
+/// SEND of an update begins after EDIT of the previous update has finished (TR94). Whenever the host is ready, it calls
+/// `plan` with the number of the next update and the current time.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The master GP, which synchronizes host, slaves, renderers and display memories.
+//! Program of the master GP, which synchronizes host, slaves, renderers and display memories.
 
 use crate::config::CubeControlConfig;
 use crate::protocol::{Token, UpdateOrder};
@@ -9,21 +9,22 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
-/// State of a renderer, as known to the master.
+/// State of a renderer, as far as the master knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
-    /// The slaves hold a token for this renderer.
+    /// The slaves hold the token of a region that this renderer draws.
     Receiving,
-    /// The renderer holds a finished region in pixel memory, and waits until the display memory is available.
+    /// The renderer holds a finished region in pixel memory, until the region's display memory is available.
     Holding(CopyTarget),
 }
 
-/// State of an update that is in progress.
+/// Progress of an update of a display memory that is not complete.
 #[derive(Debug)]
 struct UpdateProgress {
     update: FaceUpdate,
-    /// Number of earlier updates of the same memory. After as many swaps, the buffer is free.
+    /// Number of earlier updates of the same display memory. When the memory has swapped as many times, its hidden
+    /// buffer is free.
     before: u64,
     /// Number of slaves that have applied the edits.
     edited: usize,
@@ -31,14 +32,15 @@ struct UpdateProgress {
     transformed: usize,
     /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the display memory has received the map of regions.
+    /// True if the display memory has been told which regions will arrive.
     announced: bool,
-    /// Number of regions that have not arrived. `None` before RENDER.
+    /// Number of regions that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
 }
 
 impl UpdateProgress {
-    /// Returns the regions with primitives, heaviest first. An update without primitives has one region.
+    /// Returns the regions that contain primitives, heaviest first. If the update has no primitives, returns one
+    /// region.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
         if regions.is_empty() {
@@ -49,15 +51,15 @@ impl UpdateProgress {
     }
 }
 
-/// State of RENDER for one update.
+/// Progress of the RENDER stage for one update.
 #[derive(Debug)]
 struct Rendering {
     number: PictureNumber,
-    /// Regions that no renderer has yet, heaviest first.
+    /// Regions that no renderer has been assigned to yet, heaviest first.
     unassigned: VecDeque<RegionId>,
     /// Number of regions of the update.
     regions: u16,
-    /// Number of tokens that the slaves hold.
+    /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
 }
 
@@ -65,20 +67,20 @@ struct CubeMaster {
     gp: Gp,
     config: CubeControlConfig,
     completed: Completed,
-    /// The next update to EDIT.
+    /// The first update whose EDIT has not been ordered yet.
     next_edit: PictureNumber,
-    /// Updates from number `completed.copied` on.
+    /// Updates that are not complete. The first one has the number `completed.copied`.
     under_way: VecDeque<UpdateProgress>,
-    /// Number of updates of each memory so far.
+    /// For each memory, the number of updates that the host has sent so far.
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
     next_slave: usize,
-    /// Number of swaps when the master last checked.
+    /// Number of swaps of all memories at the master's last check.
     swaps_known: u64,
 }
 
-/// Runs the master program.
+/// Runs the program of the master GP.
 ///
 /// # Errors
 ///
@@ -116,7 +118,8 @@ impl CubeMaster {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// Returns `Some(Some(message))` for a message, and `Some(None)` if a memory has swapped since the last check.
+    /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if a memory has swapped since the
+    /// last check.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -141,7 +144,7 @@ impl CubeMaster {
         update.0.checked_sub(self.completed.copied).map(|place| place as usize)
     }
 
-    /// Starts the most urgent action that the rules permit. Returns false if there is none.
+    /// Begins the most urgent action that the rules permit. Returns false if they permit none.
     async fn begin_one(&mut self) -> bool {
         self.swaps_known = self.swaps();
         // Order of urgency: announce, copy, token, edit.
@@ -167,7 +170,8 @@ impl CubeMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Returns the first update that is transformed, and whose memory shows its previous update.
+    /// Returns the first update that can be announced to its memory: it is transformed, and the memory shows its
+    /// previous update. The result is an index of `under_way`.
     fn next_announcement(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
             let is_known = one.transformed == self.config.slaves.len();
@@ -187,7 +191,7 @@ impl CubeMaster {
         self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
-    /// Begins RENDER of the next update if the rules permit it, with its regions sorted by weight.
+    /// Begins RENDER of the next update if the rules permit it. Sorts the update's regions by weight, heaviest first.
     fn begin_render(&mut self) {
         let number = PictureNumber(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(number) {
@@ -207,7 +211,7 @@ impl CubeMaster {
         Some((renderer, region))
     }
 
-    /// Sends the token of a region to the next slave in turn.
+    /// Sends the token of a region to a slave. The slaves take turns as the first holder of a token.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
@@ -230,7 +234,7 @@ impl CubeMaster {
         self.under_way(update).is_none_or(|one| one.announced)
     }
 
-    /// Returns a region that a renderer holds and whose memory is now available.
+    /// Returns a renderer that holds a finished region whose memory has become available, and the region's destination.
     fn next_allowed_copy(&self) -> Option<(usize, CopyTarget)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match state {
             RendererUse::Holding(target) => self.is_announced(target.picture).then_some((renderer, *target)),
@@ -238,7 +242,7 @@ impl CubeMaster {
         })
     }
 
-    /// Sends the copy command of a region whose memory was not available when the last slave had the token.
+    /// Sends the copy command of a region whose display memory was not available when the region's token was sent.
     async fn copy(&mut self, renderer: usize, target: CopyTarget) {
         self.renderers[renderer] = RendererUse::Idle;
         let order = copy_order(&self.config, target);
@@ -306,7 +310,7 @@ impl CubeMaster {
         }
     }
 
-    /// Records the arrival of a region. `low` is the low word of the update's number.
+    /// Records that a region has arrived. `low` is the low word of the update's number.
     fn note_copied(&mut self, low: u32) {
         let of_update = |one: &&mut UpdateProgress| one.update.number.to_words()[0] == low;
         if let Some(missing) = self.under_way.iter_mut().find(of_update).and_then(|one| one.missing.as_mut()) {
@@ -315,7 +319,7 @@ impl CubeMaster {
         self.remove_finished();
     }
 
-    /// Removes updates whose regions have all arrived and whose commands have all been accepted.
+    /// Removes updates that are complete: all their commands have been accepted, and all their regions have arrived.
     fn remove_finished(&mut self) {
         while self.completed.rendered > self.completed.copied
             && self.under_way.front().is_some_and(|one| one.missing == Some(0))

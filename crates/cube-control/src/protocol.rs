@@ -1,4 +1,4 @@
-//! The messages between host, master and slaves, encoded as words.
+//! Messages between host, master, slaves and renderers, encoded as words.
 
 use crate::update::FaceUpdate;
 use pxpl5_gp::{Fault, Received};
@@ -12,20 +12,20 @@ const TOKEN: Word = 0x106;
 const ACCEPTED: Word = 0x107;
 const EDITS_DONE: Word = 0x108;
 
-/// A token, which permits its holder to send commands of one region to one renderer.
+/// A token. The slave that holds it may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) update: PictureNumber,
-    /// Index of the region, counted over all six faces.
+    /// Index of the region, counted through all six faces.
     pub(crate) region: RegionId,
-    /// Index of the renderer.
+    /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that have not sent their bins yet, including the receiver.
+    /// Number of slaves that have not sent their bins yet, including the slave that receives the token.
     pub(crate) slaves_left: u16,
-    /// Number of tokens of this update.
+    /// Number of tokens of this update, one for each region with primitives.
     pub(crate) of: u16,
-    /// True if the last slave adds the copy command. Otherwise the region stays in pixel memory, and the renderer
-    /// waits.
+    /// True if the last slave adds the copy command. Otherwise the region stays in pixel memory, and the renderer waits
+    /// for a copy command.
     pub(crate) copies: bool,
 }
 
@@ -40,18 +40,18 @@ pub(crate) enum UpdateOrder {
     Edited(PictureNumber),
     /// Master to host: all slaves have applied the edits of an update.
     EditsDone(PictureNumber),
-    /// Slave to master: the update is transformed, with the number of entries in each region's bin.
+    /// Slave to master: the update is transformed. The message contains the number of entries in each region's bin.
     Transformed(PictureNumber, Vec<u32>),
     /// Master to slave, or slave to slave: a token.
     Token(Token),
-    /// Last slave to master: a region's commands were accepted.
+    /// Last slave to master: all commands of a region were accepted.
     Accepted(Token),
     /// Renderer to master: a region of an update has arrived. `update` is the low word of the update's number.
     Copied { update: Word },
 }
 
 impl UpdateOrder {
-    /// Returns the length in words, and the body.
+    /// Returns the length in words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
@@ -79,7 +79,7 @@ impl UpdateOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes a message, or returns `None` for invalid words.
+    /// Decodes words. Returns `None` if the words are no message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match *words.first()? {
             SEND => FaceUpdate::from_words(&words[1..]).map(Self::Send),
@@ -96,13 +96,13 @@ impl UpdateOrder {
     }
 }
 
-/// Returns a message that consists of a tag and the number of an update.
+/// Encodes a message that consists of a tag and the number of an update.
 fn numbered(tag: Word, update: PictureNumber) -> Vec<Word> {
     let [low, high] = update.to_words();
     vec![tag, low, high]
 }
 
-/// Returns the update number of a [`numbered`] message.
+/// Decodes the update number of a message that [`numbered`] has encoded.
 fn number_of(words: &[Word]) -> Option<PictureNumber> {
     let [_, low, high] = *words.first_chunk()?;
     Some(PictureNumber::from_words(low, high))

@@ -4,7 +4,7 @@
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of updates that have passed each stage. All stages process updates in order.
+/// Number of updates that have passed each stage. Every stage processes updates in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Completed {
     pub(crate) sent: u64,
@@ -12,22 +12,22 @@ pub(crate) struct Completed {
     pub(crate) transformed: u64,
     /// Number of updates whose last commands were accepted.
     pub(crate) rendered: u64,
-    /// Number of updates whose regions have all arrived, like those of all earlier updates.
+    /// Number of updates that are complete: all regions of the update and of all earlier updates have arrived.
     pub(crate) copied: u64,
 }
 
 impl Completed {
     /// Returns true if EDIT of an update may begin.
     ///
-    /// EDIT needs SEND of the same update, TRANSFORM of the previous one, RENDER of the second previous one (two bin
-    /// contexts) and COPY of the third previous one.
+    /// Four things must be complete: SEND of the same update, TRANSFORM of the previous update, RENDER of the second
+    /// previous update, and COPY of the third previous update. RENDER matters because there are only two bin contexts.
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n
     }
 
-    /// Returns true if RENDER of an update may begin. RENDER needs TRANSFORM by all slaves, and RENDER of the previous
-    /// update.
+    /// Returns true if RENDER of an update may begin. All slaves must have finished TRANSFORM of this update, and
+    /// RENDER of the previous update must be complete.
     pub(crate) const fn may_render(&self, update: PictureNumber) -> bool {
         self.transformed > update.0 && self.rendered >= update.0
     }

@@ -1,4 +1,4 @@
-//! A slave GP: EDIT and TRANSFORM run in the foreground, and tokens in interrupts.
+//! Programs of a slave GP: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
 use crate::config::CubeControlConfig;
 use crate::faces::{CubePass, context_of};
@@ -13,20 +13,20 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State shared by both programs of a slave.
+/// State that both programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     updates: VecDeque<FaceUpdate>,
-    /// The first update whose EDIT may not begin yet.
+    /// The first update that the master has not permitted for EDIT.
     next_edit: PictureNumber,
-    /// The two bin contexts.
+    /// The bins of both contexts. A context is one of two sets of bins; `None` if it is empty.
     bins: [Option<CubePass>; 2],
-    /// Number of tokens that this slave has seen for each context.
+    /// For each context, the number of tokens that this slave has received for its bins.
     tokens: [u16; 2],
 }
 
 impl SlaveState {
-    /// Counts a token of a context. After the last token, empties the context and returns true.
+    /// Counts a token for the bins of a context. After the last of `of` tokens, empties the context and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -40,7 +40,7 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// Returns the two programs of slave `index`, with their priorities.
+/// Returns the two programs of the slave with index `index`, with their priorities.
 ///
 /// A program fails with [`Fault::Memory`] if display list, commands or bins do not fit into memory. It fails with
 /// [`Fault::Protocol`] if it receives an invalid message.
@@ -85,7 +85,7 @@ async fn transform_program(
     }
 }
 
-/// Installs the moved vertices of a warped update in the board's memory. Moving them takes no simulated time.
+/// Stores the displaced vertices of a warped update in the board's memory. Their displacement takes no simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -94,7 +94,7 @@ fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> R
     Ok(())
 }
 
-/// Applies the edits of the next update, and reports to the master (EDIT).
+/// Performs EDIT: applies the edits of the next update, and reports this to the master.
 async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> Result<FaceUpdate, Fault> {
     let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
     let number = update.number;
@@ -110,10 +110,11 @@ fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
     if may_begin { state.updates.pop_front() } else { None }
 }
 
-/// Transforms the primitives of an update into commands and bins for each face that they touch (TRANSFORM).
+/// Performs TRANSFORM: makes commands of an update's primitives, and puts them into the bins of each face that they
+/// touch.
 ///
-/// If the bins of two updates do not fit into memory, TRANSFORM waits until RENDER of the previous update has freed its
-/// bins.
+/// If the bins of two updates do not fit into memory, TRANSFORM waits. It begins when RENDER of the previous update has
+/// freed its bins.
 async fn transform(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -142,7 +143,7 @@ async fn transform(
     Ok(())
 }
 
-/// Receives messages: stores updates and permissions to edit, and processes every token.
+/// Runs the interrupt program: it stores updates and permissions to edit when they arrive, and handles tokens.
 async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
     loop {
         let received = gp.next_message().await;
@@ -161,7 +162,7 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
     }
 }
 
-/// Sends this slave's bin of the token's region, then passes the token on.
+/// Sends this slave's bin for the token's region, then passes the token on.
 async fn walk(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -180,7 +181,7 @@ async fn walk(
     free_bins(gp, state, token)
 }
 
-/// A slave's bin of a token's region, with the commands that begin and end the region.
+/// A slave's bin for a token's region, with the commands that begin and end the region.
 struct TokenBin {
     pass: Arc<Pass>,
     context: usize,
@@ -190,7 +191,7 @@ struct TokenBin {
 }
 
 impl TokenBin {
-    /// Returns the bin, or `None` if this slave has nothing on the region's face.
+    /// Returns the bin, or `None` if this slave has no bins for the face that contains the region.
     fn of(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Option<Self> {
         let context = context_of(token.update);
         let (face, region) = config.faces.on_face(token.region);
@@ -211,7 +212,7 @@ impl TokenBin {
     }
 }
 
-/// Returns the commands around a bin. The first slave begins the region, and the last one ends it.
+/// Returns the commands that this slave adds to its bin. The first slave begins the region, and the last slave ends it.
 fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     let target = config.faces.target(update, token.region);
@@ -222,7 +223,8 @@ fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> Re
     }
 }
 
-/// Returns the message that passes a token to the next slave, or reports to the master after the last one.
+/// Returns the message that passes a token to the next slave. The last slave's message tells the master that the region
+/// is finished.
 fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -235,7 +237,7 @@ fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId,
     (receiver, words, body)
 }
 
-/// Frees an update's commands and bins when this slave has seen all its tokens.
+/// Frees an update's commands and bins when this slave has received the tokens of all its regions.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
     let context = context_of(token.update);
     if state.borrow_mut().count_token(context, token.of) {

@@ -1,4 +1,4 @@
-//! An update of one display memory.
+//! An update, which draws the content of one display memory anew.
 
 use crate::warp::{FaceWarp, WARP_WORDS};
 use address_recalculation::{begin_update, swap_together};
@@ -6,10 +6,10 @@ use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
 use std::sync::Arc;
 
-/// An update of a display memory, as requested by the host.
+/// An update of one display memory, as the host requests it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceUpdate {
-    /// Number of the update over all memories, counted from 0.
+    /// Number of the update. Updates of all memories are counted together, from 0.
     pub number: PictureNumber,
     /// Index of the display memory.
     pub memory: u8,
@@ -17,22 +17,24 @@ pub struct FaceUpdate {
     pub buffer: u8,
     /// Bit mask of the memories that must swap together with this one. 0 if this memory swaps alone.
     pub together: u8,
-    /// The view of an eye in its initial orientation, with the projection of a face, and the edits.
+    /// The view of an eye in its initial orientation, with the projection of a face. Also contains the edits of
+    /// structures.
     pub view: FrameView,
-    /// Flag for each structure of the display list: true if the memory holds it.
+    /// For each structure of the display list: true if the memory holds the structure.
     pub structures: Vec<bool>,
-    /// Displacement of vertices towards the slower memory. `None` if vertices stay.
+    /// Displacement of vertices near the border to the slower memory. `None` if no vertex is displaced.
     pub warp: Option<FaceWarp>,
 }
 
-/// Flag bit of an encoded update: a warp follows the structures.
+/// Bit in the third word of an encoded update. If it is set, a warp follows the bits of the structures.
 const WARPED: Word = 1 << 24;
 
-/// Number of words before the structures.
+/// Number of words before the bits of the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Returns the two messages that announce the update to its memory: the map of regions, and the swap request.
+    /// Returns the two messages that announce the update to its memory: the regions that will arrive, and the swap
+    /// request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
@@ -41,10 +43,10 @@ impl FaceUpdate {
         [map, request]
     }
 
-    /// Encodes the update.
+    /// Encodes the update as words.
     ///
-    /// The order is: number (two words), memory with buffer and group, number of structures, a bit per structure, warp
-    /// if any, view.
+    /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
+    /// structure, warp if there is one, view.
     pub(crate) fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;

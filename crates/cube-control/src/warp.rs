@@ -1,17 +1,18 @@
-//! Region warping: vertices are moved before a slave transforms them.
+//! Region warping: vertices are displaced before a slave transforms them.
 
 use glam::DVec3;
 use priority_rendering::{Cell, CellAssignment, Falloff, PriorityError, RegionWarp};
 use pxpl5_wire::Word;
 
-/// Displacement of an update's vertices towards the slower memory, which was drawn from another position.
+/// Displacement of an update's vertices near the border to the next slower memory. The slower memory was drawn from
+/// another eye position, so the two images would not meet at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
-    /// Assignment of cells to memories.
+    /// Assignment of cells (squares of the floor) to memories.
     pub dealing: CellAssignment,
-    /// Decrease of the displacement with the distance from the border to the slower memory.
+    /// Shape of the falloff: how the displacement decreases with the distance from the border to the slower memory.
     pub falloff: Falloff,
-    /// Distance from the border within which vertices are moved, in metres.
+    /// Length of the falloff: the distance from the border within which vertices are displaced, in metres.
     pub length_m: f64,
     /// Eye position from which this update is drawn.
     pub drawn_from: DVec3,
@@ -19,17 +20,18 @@ pub struct FaceWarp {
     pub slower_from: DVec3,
 }
 
-/// Number of words of a warp.
+/// Number of words of an encoded warp.
 ///
-/// They are home cell, rings (growth in the upper half), memories, falloff, two lengths and two positions.
+/// The words are home cell, rings (growth in the upper half), number of memories, falloff, two lengths and two
+/// positions.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
-    /// Returns the position at which a vertex of a memory is drawn.
+    /// Returns the position at which a vertex is drawn, if the memory with index `memory` holds the vertex.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the falloff has no length.
+    /// [`PriorityError`] if the length of the falloff is not positive and finite.
     pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, PriorityError> {
         let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
         Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))

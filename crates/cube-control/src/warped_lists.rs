@@ -1,4 +1,4 @@
-//! Display lists with moved vertices.
+//! Display lists with displaced vertices.
 
 use crate::update::FaceUpdate;
 use pphigs::{DisplayList, ModelFrame};
@@ -6,20 +6,20 @@ use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A cache of display lists with moved vertices. All slaves use equal lists, so the cache only saves time on the host
-/// computer.
+/// A cache of display lists with displaced vertices. All slaves use equal lists, so the cache only shortens the run
+/// time of the simulator.
 #[derive(Clone, Debug, Default)]
 pub struct WarpedLists(Arc<Mutex<Kept>>);
 
-/// Lists by update number, newest first.
+/// Display lists with the numbers of their updates, newest first.
 type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 
-/// Number of lists in the cache: a fast slave can be one update ahead of a slow one.
+/// Number of lists in the cache. A fast slave can be one update ahead of a slow one, so two lists are in use.
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// Returns the display list of an update. Vertices of structures that do not move are displaced by the update's
-    /// warp.
+    /// Returns the display list of an update. The update's warp displaces the vertices of structures that are fixed to
+    /// the world and that the update does not edit.
     #[must_use]
     pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
         let Some(warp) = &update.warp else { return Arc::clone(list) };

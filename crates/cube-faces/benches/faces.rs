@@ -1,5 +1,5 @@
-//! Draws six faces of 512 texels with 10,000 triangles, compared with a plain loop that tests every texel of a
-//! triangle's rows.
+//! Draws 10,000 triangles into six faces of 512 x 512 texels. Compares the time with a plain loop that tests every
+//! texel of a triangle's rows.
 
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
@@ -12,8 +12,8 @@ use std::hint::black_box;
 const VIEW: FaceGeometry = FaceGeometry { texels: 512, guard: 1 };
 const FORMAT: TexelFormat = TexelFormat { colour_bits: 24, depth_bits: 24 };
 
-/// Returns a hall of six sides with 2 n x n triangles each, and a shell inside, so that every texel is drawn more than
-/// once.
+/// Returns a hall with six sides of 2 n x n triangles each, and a shell inside the hall. Every texel is thus drawn more
+/// than once.
 fn scene(n: u32) -> Vec<[Corner; 3]> {
     let mut triangles = Vec::new();
     for (size, every) in [(10.0, 1), (4.0, 2)] {

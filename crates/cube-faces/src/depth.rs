@@ -1,16 +1,16 @@
-//! Depths of 24 bits, with the same near and far plane on all faces.
+//! Depths of 24 bits. All faces have the same near and far plane.
 
 use address_recalculation::DEPTH_FARTHEST;
 use thiserror::Error;
 
-/// Range of drawn distances along the axis of a face, in metres.
+/// Range of the distances that are drawn, measured along the axis of a face, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
     near_m: f64,
     far_m: f64,
 }
 
-/// An invalid range of depths.
+/// The error for an invalid range of depths.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("depth range: expected 0 < near < far, both finite, found near {near_m} m and far {far_m} m")]
 pub struct DepthError {
@@ -21,7 +21,7 @@ pub struct DepthError {
 }
 
 impl DepthRange {
-    /// Creates a range from near to far plane, in metres.
+    /// Creates the range between a near and a far plane, given in metres.
     ///
     /// # Errors
     ///
@@ -41,14 +41,15 @@ impl DepthRange {
         self.far_m
     }
 
-    /// Returns (a, b) such that a + b/w is the depth: 0 at the near plane, 1 at the far plane.
+    /// Returns the coefficients (a, b) of the depth a + b/w. The depth is 0 at the near plane and 1 at the far plane.
     #[must_use]
     pub(crate) fn linear(&self) -> [f64; 2] {
         let scale = self.far_m / (self.far_m - self.near_m);
         [scale, -scale * self.near_m]
     }
 
-    /// Returns the depth in 24 bits of a distance along the axis, or `None` outside the range.
+    /// Returns the 24-bit depth of a point from its distance along the axis. Returns `None` if the distance is outside
+    /// the range.
     #[must_use]
     pub fn word(&self, distance_m: f64) -> Option<u32> {
         let [a, b] = self.linear();
@@ -56,7 +57,8 @@ impl DepthRange {
         (distance_m > 0.0 && (0.0..1.0).contains(&depth)).then_some((depth * f64::from(DEPTH_FARTHEST)) as u32)
     }
 
-    /// Returns the distance in metres along the axis at the middle of a depth step. `word` is the depth in 24 bits.
+    /// Returns the distance along the axis in metres that belongs to the 24-bit depth `word`. It is the distance for
+    /// the middle of the depth step.
     #[must_use]
     pub fn distance_m(&self, word: u32) -> f64 {
         let [a, b] = self.linear();

@@ -1,8 +1,10 @@
-//! A triangle as linear functions over a face: three edges, and the reciprocal of the distance along the axis.
+//! Linear functions that describe a triangle on a face: three edges, and the reciprocal of the distance along the
+//! face's axis.
 
 use glam::DVec3;
 
-/// A function a x + b y + c over a face. x points right and y down, in tangents from the face's middle.
+/// A linear function a x + b y + c over a face. x points right and y points down. Both are tangents of angles from the
+/// face's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Linear {
     pub(crate) x: f64,
@@ -19,7 +21,7 @@ impl Linear {
         DVec3::new(self.x, self.y, self.c)
     }
 
-    /// Returns the part of the function that is constant along a row.
+    /// Returns `b y + c`, the part of the function that is constant along a row.
     #[inline(always)]
     pub(crate) fn row(self, y: f64) -> f64 {
         self.y * y + self.c
@@ -34,18 +36,18 @@ impl Linear {
 /// A triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
-    /// Edge functions, positive inside. Function i belongs to the edge opposite to corner i.
+    /// Edge functions, positive inside the triangle. Function i belongs to the edge opposite to corner i.
     ///
-    /// Divided by `determinant`, each equals the barycentric coordinate of its corner divided by w.
+    /// Function i divided by `determinant` is the barycentric coordinate of corner i divided by w.
     pub(crate) edges: [Linear; 3],
-    /// Triple product of the corners: six times the volume of the pyramid from the eye to the triangle.
+    /// Triple product of the corners: six times the volume of the pyramid between the eye and the triangle.
     pub(crate) determinant: f64,
 }
 
 impl Edges {
     /// Creates the functions from corners in a face's axes: x right, y down, z along the face's axis.
     ///
-    /// Returns `None` for a triangle that is seen edge-on.
+    /// Returns `None` if the plane of the triangle contains the eye.
     pub(crate) fn new(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let edges = [b.cross(c), c.cross(a), a.cross(b)];
@@ -57,21 +59,22 @@ impl Edges {
         Some(Self { edges: edges.map(|edge| Linear::of(edge * sign)), determinant: determinant.abs() })
     }
 
-    /// Returns 1/w in the plane of the triangle.
+    /// Returns 1/w as a linear function over the face, for points of the triangle.
     pub(crate) fn reciprocal(&self) -> Linear {
         Linear::sum(self.edges, [1.0 / self.determinant; 3])
     }
 }
 
-/// An edge, and constants to find its crossing with a row.
+/// An edge function, with constants that find the column at which the edge crosses a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// True if points on the edge count as inside. They do if the inside has larger x, or equal x and larger y.
+    /// True if points exactly on the edge count as inside. This is so if the inside has larger x, or if the edge is
+    /// horizontal and the inside has larger y.
     has_edge: bool,
-    /// Factor from the row's constant part to columns.
+    /// Factor that converts the constant part of a row's edge function to a number of columns.
     columns_of: f64,
-    /// Column of the face's middle.
+    /// Column index of the face's middle, with a fraction.
     middle: f64,
 }
 
@@ -81,7 +84,7 @@ impl Crossing {
         Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
     }
 
-    /// Returns true if a texel middle at `x` counts as inside.
+    /// Returns true if a texel whose middle is at `x` is inside the edge.
     #[inline(always)]
     fn takes(&self, x: f64, row: f64) -> bool {
         let value = self.edge.x * x + row;
@@ -90,8 +93,8 @@ impl Crossing {
 
     /// Restricts a range of columns to the columns inside this edge.
     ///
-    /// The rounded value of `takes` is monotone along a row. A quotient finds the crossing approximately, and `takes`
-    /// determines the exact column.
+    /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
+    /// exact column. Its rounded value rises or falls monotonically along a row.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
         // A horizontal edge accepts the whole row or nothing.
@@ -115,7 +118,8 @@ impl Crossing {
         }
     }
 
-    /// Finds the exact border within a range, starting at an estimated column.
+    /// Finds the exact first or last column inside the edge, within a range. The search starts at the estimated column
+    /// `from`.
     #[cold]
     #[inline(never)]
     fn search(&self, from: i64, row: f64, columns: Columns, range: [i64; 2]) -> i64 {
@@ -132,7 +136,7 @@ impl Crossing {
     }
 }
 
-/// Middles of the columns (or rows) of a face, in tangents.
+/// Middles of a face's columns or rows, as tangents of angles from the face's middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
     pub(crate) first: f64,

@@ -1,16 +1,17 @@
-//! Rasterization of a triangle's rows on a face: covered texels, colours and depths, several texels at a time.
+//! Rasterization of a triangle on a face, row by row. Covered texels, their colours and depths are computed several at
+//! a time.
 
 use crate::edges::{Columns, Crossing, Linear};
 use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceSet, TexelAddress};
 use multiversion::multiversion;
 
-/// Number of texels that are computed together before they are written.
+/// Largest number of texels that are computed before they are written.
 const RUN: usize = 64;
 
-/// Texels are computed in multiples of this number: the doubles in a vector register.
+/// Number of doubles in a vector register. Texels are computed in multiples of this number.
 const LANES: usize = 4;
 
-/// Colours of a triangle on a face.
+/// Colours of one triangle on a face.
 pub(crate) enum Shade {
     /// A constant colour.
     Flat(u32),
@@ -18,7 +19,7 @@ pub(crate) enum Shade {
     Smooth([Linear; 3]),
 }
 
-/// A triangle on a face.
+/// A triangle on a face, prepared for drawing.
 pub(crate) struct OnFace {
     pub(crate) face: CubeFace,
     pub(crate) columns: Columns,
@@ -27,18 +28,18 @@ pub(crate) struct OnFace {
     pub(crate) crossings: [Crossing; 3],
     /// 1/w as a function over the face.
     pub(crate) reciprocal: Linear,
-    /// Coefficients (a, b) of the depth a + b/w, which is between 0 and 1 for drawn texels.
+    /// Coefficients (a, b) of the depth a + b/w. The depth of a drawn texel is between 0 and 1.
     pub(crate) depth: [f64; 2],
     pub(crate) shade: Shade,
 }
 
-/// Colours and depths of a run of texels.
+/// Colours and depths of consecutive texels of a row.
 struct Run {
     colours: [u32; RUN],
     depths: [u32; RUN],
 }
 
-/// Draws a range of rows, and returns the number of covered texels.
+/// Draws a triangle in a range of rows, and returns the number of texels that it covers.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u64 {
     let mut run = Run { colours: [0; RUN], depths: [0; RUN] };
@@ -67,7 +68,8 @@ pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u6
     texels
 }
 
-/// Computes colours and depths from a column on, rounded up to a multiple of [`LANES`] texels.
+/// Computes colours and depths of `count` texels from column `first` on. The number of computed texels is rounded up to
+/// a multiple of [`LANES`].
 #[inline(always)]
 fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
     let whole = count.next_multiple_of(LANES).min(RUN);
@@ -101,20 +103,21 @@ fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
 
 /// Returns the integer part of a number from 0 to 2^32.
 ///
-/// Adding 2^52 puts the integer into the lowest bits of the double. A cast would test each number separately.
+/// The addition of 2^52 moves the integer into the lowest bits of the double. A cast would be slower, because it tests
+/// each number separately.
 #[inline(always)]
 fn whole_part(number: f64) -> u32 {
     (number.floor() + 4_503_599_627_370_496.0).to_bits() as u32
 }
 
-/// Returns a depth in 24 bits. Outside the near and far plane, returns the farthest depth, which draws nothing.
+/// Converts a depth from 0 to 1 to 24 bits. Any other depth becomes the farthest depth, with which no texel is drawn.
 #[inline(always)]
 fn depth_word(depth: f64) -> u32 {
     let word = whole_part(depth * f64::from(DEPTH_FARTHEST));
     if (0.0..1.0).contains(&depth) { word } else { DEPTH_FARTHEST }
 }
 
-/// Returns a colour component, clamped to 0 to 255 and rounded to nearest.
+/// Returns a colour component, limited to 0 to 255 and rounded to the nearest integer.
 #[inline(always)]
 fn byte(part: f64) -> u32 {
     let part = if part > 0.0 { part } else { 0.0 };

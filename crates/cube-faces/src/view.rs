@@ -1,4 +1,4 @@
-//! Drawing of triangles into six faces.
+//! Drawing of triangles into the six faces of a cube.
 
 use crate::depth::DepthRange;
 use crate::edges::{Columns, Crossing, Edges, Linear};
@@ -15,15 +15,15 @@ pub struct Corner {
     pub colour: u32,
 }
 
-/// Statistics of a drawing.
+/// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drawing {
-    /// Number of triangles passed to the drawing.
+    /// Number of triangles given to the drawing.
     pub triangles: u64,
-    /// Number of faces that triangles may touch, summed over all triangles. A renderer transforms a triangle once per
-    /// face.
+    /// Sum, over all triangles, of the number of faces that the triangle can touch. A real machine transforms a
+    /// triangle once for each of these faces.
     pub on_faces: u64,
-    /// Number of texels that triangles cover, including hidden ones.
+    /// Number of texels that triangles cover. A texel counts once for each triangle that covers it, visible or not.
     pub texels: u64,
 }
 
@@ -36,16 +36,16 @@ impl Drawing {
     }
 }
 
-/// Size of the faces and range of depths.
+/// Size of the faces, and range of drawn depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Number of texels and guard texels.
+    /// Number of texels along an edge of a face, including guard texels, and number of guard texels.
     pub geometry: FaceGeometry,
-    /// Near and far plane.
+    /// Distances of the near and far plane.
     pub depth: DepthRange,
 }
 
-/// A face with its axes, and the values that all triangles on it share.
+/// One face: its axes, and the values that all triangles on it share.
 struct FaceView {
     face: CubeFace,
     axes: [DVec3; 3],
@@ -57,12 +57,12 @@ struct FaceView {
 }
 
 impl CubeView {
-    /// Draws triangles as seen from an eye position. The nearest triangle of a texel wins, and the first one wins a
-    /// tie.
+    /// Draws triangles as seen from an eye position. Each texel shows the nearest triangle. If two triangles are
+    /// equally near, the first one is visible.
     ///
     /// # Panics
     ///
-    /// Panics if the faces have another size than `geometry`.
+    /// Panics if the faces have another number of texels than `geometry`.
     pub fn draw(&self, eye: DVec3, triangles: impl IntoIterator<Item = [Corner; 3]>, faces: &mut FaceSet) -> Drawing {
         assert_eq!(faces.texels(), self.geometry.texels, "faces of another size");
         let views = CubeFace::ALL.map(|face| self.face(face));
@@ -100,7 +100,8 @@ impl CubeView {
 }
 
 impl FaceView {
-    /// Returns the corners in the face's axes, or `None` if all lie beyond one side of the face's pyramid.
+    /// Returns the corners in the axes of the face. Returns `None` if all corners are outside the same side of the
+    /// face's pyramid of sight.
     fn in_sight(&self, seen: [DVec3; 3]) -> Option<[DVec3; 3]> {
         let places = seen.map(|v| DVec3::from_array(self.axes.map(|axis| v.dot(axis))));
         let all = |is_out: &dyn Fn(&DVec3) -> bool| places.iter().all(is_out);
@@ -112,7 +113,8 @@ impl FaceView {
         (!is_out && places.iter().all(|p| p.is_finite())).then_some(places)
     }
 
-    /// Returns the rows that a triangle may touch: those of its part beyond the near plane, and one more on each side.
+    /// Returns the range of rows that a triangle can touch. It covers the triangle's part beyond the near plane, with
+    /// one additional row on each side.
     fn rows(&self, places: [DVec3; 3]) -> [i64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (i, place) in places.iter().enumerate() {
@@ -132,7 +134,7 @@ impl FaceView {
         [(row(range[0]) - 1.0).clamp(0.0, last).floor() as i64, (row(range[1]) + 2.0).clamp(0.0, last).ceil() as i64]
     }
 
-    /// Draws a triangle, and returns the number of covered texels.
+    /// Draws a triangle, and returns the number of texels that it covers.
     fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
         let Some(edges) = Edges::new(places) else { return 0 };
         let triangle = OnFace {

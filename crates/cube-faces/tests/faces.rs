@@ -1,4 +1,4 @@
-//! Faces, compared with an independent model that casts a ray for each texel.
+//! Compares faces with an independent model that casts a ray for each texel.
 
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet, TexelAddress, TexelFormat};
 use cube_faces::{Corner, CubeView, DepthRange, Drawing};
@@ -29,8 +29,8 @@ fn triangle(places: [[f64; 3]; 3], colour: u32) -> [Corner; 3] {
     places.map(|place| Corner { place: DVec3::from_array(place), colour })
 }
 
-/// Returns the intersection of a ray with a triangle: smallest barycentric coordinate, distance along the axis, all
-/// coordinates.
+/// Returns the intersection of a ray with a triangle: the smallest barycentric coordinate, the distance along the axis,
+/// and all barycentric coordinates.
 fn met(ray: DVec3, corners: [DVec3; 3]) -> Option<(f64, f64, DVec3)> {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);

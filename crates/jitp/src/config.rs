@@ -1,4 +1,4 @@
-//! Configuration: the boards, and the variant of the pipeline.
+//! Configuration of just-in-time pixels: the boards, and the variant of the pipeline.
 
 use crate::timing::JitpTiming;
 use pxpl5_display::{Aim, LightTimes};
@@ -12,23 +12,24 @@ use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Interpolation mode of a dual display list: how vertices move from the start to the end of a field.
+/// Interpolation mode for two views of a field: how vertices move between the start and the end of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
-    /// Interpolates the vertex's screen positions, after the divide by depth.
+    /// Interpolates the vertex's screen positions, after the division by depth.
     Screen,
-    /// Interpolates the vertex's eye-space positions, before the divide by depth.
+    /// Interpolates the vertex's eye-space positions, before the division by depth.
     View,
 }
 
-/// The moments for which a field's picture is computed.
+/// The times for which a field's picture is computed. At such a time the viewer has a certain position and orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
-    /// One moment for the whole field.
+    /// One time for the whole field.
     Field,
-    /// One moment for each strip.
+    /// One time for each strip of lines.
     Strip,
-    /// Moments between the first and the last pixel of the field, from a dual display list.
+    /// One time for each strip, between the field's first and last pixel. The strips are interpolated from a dual
+    /// display list.
     Dual(Interpolation),
 }
 
@@ -37,9 +38,10 @@ pub enum Viewpoint {
 pub enum DrawingSchedule {
     /// Draws strips of a field from top to bottom.
     Beam {
-        /// Moments for which the picture is computed.
+        /// Times for which the picture is computed.
         viewpoint: Viewpoint,
-        /// True if strips reach the frame buffer just before the beam, false if one field earlier.
+        /// True if strips reach the frame buffer just before the beam scans them. False if they reach it one field
+        /// earlier.
         racing: bool,
         /// Number of rows of a strip: 1 to 128.
         strip_rows: u32,
@@ -50,7 +52,7 @@ pub enum DrawingSchedule {
         block: u32,
         /// Number of blocks that the master gives a slave in one order.
         batch: u32,
-        /// Function from a step to the block to draw.
+        /// Function from the index of a step to the block that is drawn in this step.
         order: BlockOrder,
     },
 }
@@ -64,13 +66,13 @@ pub struct Beam {
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
 
-/// The random order of blocks: a function from a step to the block to draw.
+/// The random order of blocks: a function from the index of a step to the block that is drawn in this step.
 #[derive(Clone)]
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// Creates a beam. `when` returns the time of (field, row of the field, pixel), and `retrace` the time at which a
-    /// field begins.
+    /// Creates a beam. `when` returns the time at which the beam reaches a given field, row of the field and pixel.
+    /// `retrace` returns the time at which a field begins.
     pub fn new(
         when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
         retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
@@ -78,7 +80,7 @@ impl Beam {
         Self { at: Arc::new(when), retrace: Arc::new(retrace) }
     }
 
-    /// Returns the time at which the beam is at a pixel of a row of a field.
+    /// Returns the time at which the beam reaches pixel `x` of a row of a field.
     #[must_use]
     pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
         (self.at)(field, row, x)
@@ -92,7 +94,7 @@ impl Beam {
 }
 
 impl BlockOrder {
-    /// Creates an order from a function that returns the block of each step, counted from 0.
+    /// Creates an order from a function that returns the block of each step. Steps are counted from 0.
     pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
         Self(Arc::new(block))
     }
@@ -114,14 +116,15 @@ impl fmt::Debug for BlockOrder {
     }
 }
 
-/// The master's request for a view from the tracking data.
+/// The master's request for a view that is computed from the tracker's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Number for the view: see [`JitpConfig::view_number`].
+    /// Number that the view gets: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// Time up to which the host's tracker reports have reached the master.
+    /// Time before which the host received the reports that have reached the master. The view must use only these
+    /// reports.
     pub known: Time,
-    /// Moment for which the view is drawn.
+    /// Time for which the view is drawn.
     pub shown_at: Time,
 }
 
@@ -138,17 +141,17 @@ pub struct JitpConfig {
     pub renderers: Vec<NodeId>,
     /// Node of the frame buffer; the display is mono.
     pub frame_buffer: NodeId,
-    /// Order and moments in which regions are drawn.
+    /// Order of the regions, and times for which they are drawn.
     pub schedule: DrawingSchedule,
     /// Timing of the beam.
     pub beam: Beam,
-    /// Instant within a view's display time for which the view is drawn.
+    /// Time within a view's display time for which the view is drawn, such as its middle.
     pub aim: Aim,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// True if pixels may be read. Without pixels no command words are made, and all times stay the same.
+    /// True if the run may compute pixels. Otherwise no command words are made, but all times stay the same.
     pub pixels: bool,
-    /// Times of this firmware that are not in the processor's timing table.
+    /// Times of this firmware that the processor's timing table lacks.
     pub timing: JitpTiming,
 }
 
@@ -169,7 +172,7 @@ pub enum JitpConfigError {
     },
 }
 
-/// Number of view numbers reserved for each field, which has at most 240 strips.
+/// Number of view numbers that are reserved for each field. A field has at most 240 strips.
 const VIEWS_PER_FIELD: u64 = 256;
 
 impl JitpConfig {
@@ -190,9 +193,10 @@ impl JitpConfig {
         if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
     }
 
-    /// Returns the number of the view of a strip.
+    /// Returns the number of the view for one strip of a field.
     ///
-    /// A view of the whole field has strip 0. The views of the start and the end of a field have strips 0 and 1.
+    /// A view of the whole field has the number of strip 0. The two views for the start and the end of a field have the
+    /// numbers of strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
@@ -247,25 +251,25 @@ impl JitpConfig {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
-    /// Returns true for the middle strip, whose marks in the trace represent its whole field.
+    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the whole field.
     pub fn is_middle(&self, strip: u32) -> bool {
         strip == self.grid().rows() / 2
     }
 
-    /// Returns the instant for which a strip is drawn.
+    /// Returns the time for which a strip is drawn.
     #[must_use]
     pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
-    /// Returns the instant for which a field with a single view is drawn.
+    /// Returns the time for which a field with a single view is drawn.
     #[must_use]
     pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
 
-    /// Returns the instant for which some rows of a field are drawn.
+    /// Returns the time for which a range of rows of a field is drawn.
     fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
         let shown = LightTimes {
             tick: self.beam.retrace(field),
@@ -275,15 +279,15 @@ impl JitpConfig {
         self.aim.instant(&shown)
     }
 
-    /// Returns the times of the first and the last pixel of a field: T0 and T1.
+    /// Returns the times at which the first and the last pixel of a field are scanned, T0 and T1.
     #[must_use]
     pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// Returns the position between T0 (0) and T1 (1) of the instant for which a strip is drawn. It is negative for the
-    /// retrace, which is before T0.
+    /// Returns the time for which a strip is drawn, as a position between T0 (0) and T1 (1). The position is negative
+    /// for the retrace, which is before T0.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
@@ -291,13 +295,13 @@ impl JitpConfig {
         from_begin / end.since(begin).0 as f64
     }
 
-    /// Returns the time from the order of a strip to its deadline.
+    /// Returns the duration from the order of a strip to the strip's deadline.
     ///
-    /// Every slave has as many strip times as there are slaves. A strip that does not race the beam is ready a field
-    /// earlier.
+    /// A slave draws every n-th strip, so it has the time of n strips, where n is the number of slaves. If strips do
+    /// not race the beam, they are ordered one field earlier.
     ///
-    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. A
-    /// strip is not ordered before its lines of the earlier field have been scanned, so that it cannot overwrite them.
+    /// A field and the field two before it use the same lines of the frame buffer. A strip is not ordered before its
+    /// lines of the earlier field have been scanned, so that it cannot overwrite them.
     pub(crate) fn lead(&self, racing: bool) -> Span {
         let first = PeriodNumber::FIRST;
         let begin = self.deadline(first, 0);
@@ -308,7 +312,7 @@ impl JitpConfig {
         wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
     }
 
-    /// Returns the time from a field to the next one.
+    /// Returns the duration from the start of a field to the start of the next one.
     pub(crate) fn field_time(&self) -> Span {
         let first = PeriodNumber::FIRST;
         self.deadline(first.after(2), 0).since(self.deadline(first, 0)) / 2

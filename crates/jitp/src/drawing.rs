@@ -1,4 +1,4 @@
-//! A display list seen at one moment, or at a moment between two views.
+//! The primitives of a display list as seen from one view, or interpolated between two views.
 
 use crate::config::Interpolation;
 use glam::Mat4;
@@ -11,44 +11,44 @@ use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Number of subpixels along a pixel, the unit of outlines.
+/// Number of subpixels along the side of a pixel. Outlines are in units of subpixels.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// Largest deviation, in subpixels, of a corner's path on the screen from a straight line, if the corner is
-/// interpolated in eye space.
+/// Largest deviation, in subpixels, between a straight line and a corner's path on the screen. Interpolation in eye
+/// space makes this path curved.
 ///
-/// A turn by 10 degrees in a field, far above the peak speed of a head, gives 5 pixels.
+/// A head that turns by 10 degrees in a field gives 5 pixels. This is far above the peak speed of a head.
 const CURVED: i32 = 8 * SUBPIXELS;
 
-/// A rectangle of pixels: first and last pixel across, first and last line of the frame.
+/// A rectangle of pixels. `across` holds its first and last column; `lines` holds its first and last line of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) across: [i32; 2],
     pub(crate) lines: [i32; 2],
 }
 
-/// The display list as drawn for a strip or a batch of blocks.
+/// The display list as it is drawn for a strip of lines or for a batch of blocks.
 pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// Position between two views; `None` if there is one view.
+    /// Time between two views for which the list is drawn. `None` if there is only one view.
     between: Option<Between>,
-    /// Screen triangles, computed at the first use. The strips of a conventional picture share them.
+    /// Triangles on the screen, computed at the first use. All strips of a conventional picture share them.
     outlines: OnceLock<Vec<Outline>>,
 }
 
-/// A moment between two views of a display list.
+/// A time between two views of a display list, and the interpolation for this time.
 struct Between {
     ends: Ends,
-    /// Position between the first view (0) and the second view (1).
+    /// Position of this time, on a scale from the first view (0) to the second view (1).
     part: f64,
     interpolation: Interpolation,
-    /// View at this moment, with interpolated matrices.
+    /// View at this time, with interpolated matrices.
     view: FrameView,
 }
 
-/// The transformed display list for the start and the end of a field, or for one moment.
+/// The transformed display list: for the start and the end of a field, or for one time only.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -62,7 +62,7 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// Transforms the list for `views`: one view, or the views of start and end.
+    /// Transforms the list for `views`, which is one view, or two views for the start and the end of a field.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),
@@ -72,7 +72,7 @@ impl Ends {
     }
 }
 
-/// Returns the triangles of each structure in both views.
+/// Returns the positions of each structure's triangles in both views.
 fn triangle_ends(
     list: &DisplayList,
     from: &FrameView,
@@ -83,20 +83,21 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the triangles of one structure in both views. A triangle without a position in both is `None`.
+/// Returns the positions of one structure's triangles in both views. The result is `None` for a triangle that lacks a
+/// position in either view.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
 }
 
 impl DrawnList {
-    /// Creates the drawing of a display list for one view.
+    /// Prepares the display list for drawing from one view.
     pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
         Self { list: Arc::clone(list), viewport, placed, between: None, outlines: OnceLock::new() }
     }
 
-    /// Creates the drawing of a display list at position `s` between two views.
+    /// Prepares the display list for drawing at position `s` between two views.
     pub(crate) fn between(
         list: &Arc<DisplayList>,
         ends: &Ends,
@@ -109,7 +110,8 @@ impl DrawnList {
         Self { between: Some(Between { ends: ends.clone(), part: s, interpolation, view }), ..drawn }
     }
 
-    /// Returns the number of primitives that meet each window, and the number that meet any window.
+    /// Returns the number of primitives that touch each window. Also returns the number of primitives that touch any
+    /// window.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = WindowCounts::new(windows);
         if self.between.is_some() {
@@ -128,7 +130,8 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each screen triangle, except for triangles outside the lines `near` (see [`near`]).
+    /// Calls `sink` for each triangle on the screen. Leaves out triangles that are certainly outside the range `near`
+    /// (see [`near`]).
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
@@ -143,8 +146,8 @@ impl DrawnList {
         }
     }
 
-    /// Returns the positions of a structure's k-th triangle in both views, if it has any, with the moment and mode of
-    /// interpolation.
+    /// Returns the positions of a structure's k-th triangle in both views, the position between the views, and the mode
+    /// of interpolation. Returns `None` if the triangle has no such positions.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
@@ -160,8 +163,8 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each triangle that meets a window, in order. The lines must be those of
-    /// [`Self::count`].
+    /// Calls `sink` with the command of each triangle that touches the window, in the order of the display list. The
+    /// window must be one of those given to [`Self::count`], with the same lines.
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
@@ -186,7 +189,7 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each sphere that meets a window, in order.
+    /// Calls `sink` with the command of each sphere that touches the window, in the order of the display list.
     pub(crate) fn sphere_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         self.spheres(|sphere, place| {
             if sphere.meets(window.across, window.lines) {
@@ -195,9 +198,11 @@ impl DrawnList {
         });
     }
 
-    /// Returns the work of interpolating the primitives that may meet some windows; `None` if there is one view.
+    /// Returns the work that interpolates the primitives near the given windows. Returns `None` if there is only one
+    /// view.
     ///
-    /// The board's memory holds the triangles of both views in one part, and receives the commands in another.
+    /// One part of the board's memory, `ends`, holds the triangles of both views. Another part, `commands`, receives
+    /// the commands.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,
@@ -225,27 +230,28 @@ impl DrawnList {
     }
 }
 
-/// Returns the least and greatest distance from the frame's top, in subpixels, of triangles that may meet the windows
-/// at any moment.
+/// Returns the smallest and greatest distance from the frame's top, in subpixels. Only triangles within these limits
+/// can touch the windows at any time of the field.
 fn near(windows: &[Window]) -> [i32; 2] {
     let [top, bottom] = span(windows);
     [top - CURVED, bottom + CURVED]
 }
 
-/// Returns the range from the top of the highest window to the bottom of the lowest one, in subpixels of the frame.
+/// Returns the distances of the highest window's top and of the lowest window's bottom from the frame's top, in
+/// subpixels.
 fn span(windows: &[Window]) -> [i32; 2] {
     let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
     let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
     [top, bottom]
 }
 
-/// Returns true if a triangle is outside a range of distances from the frame's top at every moment.
+/// Returns true if a triangle is outside a range of distances from the frame's top at every time of the field.
 fn is_outside_lines(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top
 }
 
-/// Calls `sink` with the command of a triangle, if the triangle meets the window.
+/// Calls `sink` with the command of a triangle, if the triangle touches the window.
 fn sink_if_met(
     triangle: ScreenTriangle<VertexColours>,
     window: &Window,
@@ -258,10 +264,10 @@ fn sink_if_met(
     }
 }
 
-/// Counts the primitives that meet windows.
+/// Counts the primitives that touch windows.
 struct WindowCounts<'a> {
     windows: &'a [Window],
-    /// Range from the top of the highest window to the bottom of the lowest one, in subpixels of the frame.
+    /// Distances of the highest window's top and of the lowest window's bottom from the frame's top, in subpixels.
     span: [i32; 2],
     each: Vec<PrimitiveCounts>,
     any: PrimitiveCounts,
@@ -304,9 +310,9 @@ impl<'a> WindowCounts<'a> {
     }
 }
 
-/// Returns the view at position `s` between two views.
+/// Returns the view at position `s` between two views. All elements of matrices are interpolated linearly.
 ///
-/// Eye-space positions move on straight lines if matrices do: (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
+/// Positions in eye space then move on straight lines: (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
 pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
     let eyes = from.eyes.iter().zip(&to.eyes).map(|(a, b)| EyeView {
         world_to_eye: matrix_between(&a.world_to_eye, &b.world_to_eye, s),

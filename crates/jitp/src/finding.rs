@@ -1,19 +1,19 @@
-//! Search of the primitives in the regions of a strip or a batch of blocks, as work of a board.
+//! Search for the primitives in the regions of a strip or of a batch of blocks, as work of a board.
 //!
-//! The work interpolates the primitives, finds them in each region, and hands them over.
+//! The work interpolates the primitives, finds those in each region, and lists the messages that draw them.
 
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// Work of interpolating the primitives near some regions and searching them.
+/// Work that interpolates the primitives near some regions, finds them, and lists their messages.
 pub(crate) struct StripSearchWork<'a> {
     pub(crate) searching: WindowSearchWork<'a>,
-    /// Interpolation before the search; `None` if the display list was transformed for one view.
+    /// Interpolation before the search. `None` if the display list was transformed for one view only.
     pub(crate) interpolating: Option<StripInterpolation<'a>>,
-    /// Numbers of primitives that meet any of the regions.
+    /// Numbers of primitives that touch at least one of the regions.
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one primitive by the timing table, in ns.
+    /// Time to interpolate one primitive, by the timing table, in nanoseconds.
     pub(crate) interpolate_ns: u64,
 }
 

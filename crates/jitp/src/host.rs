@@ -1,4 +1,4 @@
-//! The host: forwards the tracker's reports.
+//! Program of the host: it forwards the tracker's reports.
 
 use crate::config::JitpConfig;
 use crate::protocol::DrawingOrder;
@@ -6,14 +6,15 @@ use pphigs::send_as_tracked;
 use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 
-/// Sends every report of the tracker to the master as it arrives. If several reports wait, the newest is sent
-/// ([`send_as_tracked`]).
+/// Sends every report of the tracker to the master as soon as it arrives. If several reports wait, only the newest is
+/// sent ([`send_as_tracked`]).
 ///
-/// `next_report` returns the arrival of the first report after an instant, or `None` if there are no more reports.
+/// `next_report` returns the time at which the first report after a given time arrives. It returns `None` if there are
+/// no more reports.
 ///
 /// # Errors
 ///
-/// The function itself returns no error; the type is that of a program.
+/// The function itself never returns an error; its return type is that of every program.
 pub async fn host(
     gp: Gp,
     config: JitpConfig,

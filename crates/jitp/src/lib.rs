@@ -1,4 +1,5 @@
-//! Just-in-time pixels: pictures in which every line is drawn for its own moment. Also frameless rendering.
+//! Just-in-time pixels: every strip of lines is drawn for the time at which the beam scans it. Also frameless
+//! rendering.
 //!
 //! ```text
 //!   host:     report ...... report ......                      as the tracker delivers them
@@ -9,44 +10,45 @@
 //!   frame buffer:             strip 0 | strip 1 ...            just before the beam
 //! ```
 //!
-//! - One GP is the [`master`](fn@master): it synchronizes with the beam, keeps the newest tracking data and orders the
-//!   strips. Slave k of n computes strips k, k + n, k + 2n and so on, so it has n strip times for each. Every slave
+//! - One GP is the [`master`](fn@master): it synchronizes with the beam, stores the newest tracking data and orders the
+//!   strips. Slave k of n draws strips k, k + n, k + 2n and so on, so it has the time of n strips for each. Every slave
 //!   holds the whole display list.
-//! - A *strip* is one line of a field or a few ([`DrawingSchedule::Beam`]). Its regions are 128 pixels wide, and go
-//!   through the renderers in turn to the frame buffer. No second buffer is needed: one field is written while the
-//!   other one is scanned, or each line is written just before the beam.
-//! - The [`Viewpoint`] is the moment for which a strip is drawn. It is one moment for the whole field (a conventional
-//!   picture), or one for each strip, or it follows the *dual display list*. A dual list has every vertex transformed
-//!   for the start T0 and the end T1 of the field. It is interpolated on the screen, or in eye space before the divide
-//!   ([`Interpolation`]).
-//! - *Racing the beam* is a separate choice: a strip is ordered either just in time for the beam, or one field earlier,
-//!   so that the whole field is complete before its retrace.
-//! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. They
-//!   reserve the renderer's port until the last message, which copies the region, so that no other slave draws into it.
-//! - A strip is never ordered before its lines of the field two before have been scanned, for any number of slaves.
-//!   Both fields share the same place in the frame buffer.
-//! - A strip is left out if the beam has passed before a slave can begin it. The lines of the earlier field stay on the
-//!   screen.
-//! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order has the newest view,
-//!   and the blocks are shown at once.
+//! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). Its regions are 128 pixels
+//!   wide. They use the renderers in turn. No second buffer is needed: one field is written while the other one is
+//!   scanned, or each line is written just before the beam.
+//! - The [`Viewpoint`] tells for which time a strip is drawn. This can be one time for the whole field (a conventional
+//!   picture), or one for each strip. With a *dual display list*, every vertex is transformed for the start T0 and the
+//!   end T1 of the field. Strips are interpolated between both, on the screen or in eye space before the division by
+//!   depth ([`Interpolation`]).
+//! - *Racing the beam* is a separate choice. A strip is ordered either just in time for the beam, or one field earlier.
+//!   In the second case the whole field is complete before its retrace.
+//! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. These
+//!   messages reserve the renderer's port until the last one, which copies the region, so that no other slave draws
+//!   into it.
+//! - A field and the field two before it use the same lines of the frame buffer. A strip is therefore never ordered
+//!   before its lines of the earlier field have been scanned, for any number of slaves.
+//! - A strip is skipped if the beam passes it before a slave can begin it. The lines of the earlier field then stay on
+//!   the screen.
+//! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order to a slave contains
+//!   the newest view, and the blocks are shown at once.
 //!
-//! The reference model, which evaluates the view at each pixel's own moment, is not part of the firmware.
+//! The reference picture, in which each pixel is drawn for its own time, is not part of this firmware.
 //!
-//! At the cycle level all steps are i860 code ([`pphigs`]):
+//! If the boards run i860 code, all steps are such code ([`pphigs`]):
 //!
-//! - TRANSFORM of the whole list keeps commands and their boxes, or the positions of triangles at the start and the
-//!   end.
+//! - TRANSFORM of the whole list stores commands and their bounding boxes, or the positions of triangles at the start
+//!   and the end of the field.
 //! - The triangles of a strip are interpolated between both positions. Such a strip begins a pass of its own, with the
 //!   interpolated matrices.
-//! - The primitives in a strip or block are found by their boxes, and handed over like a bin.
+//! - The primitives in a strip or block are found by their bounding boxes, and sent like the bin of a region.
 //! - The master's orders are assembled by code.
 //!
-//! The start time of a field and the number of blocks in a batch are constants at the cycle level.
+//! With i860 code, the start time of a field and the number of blocks in a batch are constants.
 //!
 //! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip),
-//! transforms shared among slaves, Phong shading. Frameless pixels come in square blocks, since a single pixel would
-//! pay 16 words of overhead on the ring. A triangle with a corner outside the guard band has no screen position at T0
-//! or T1; it is interpolated in eye space, like the spheres.
+//! transforms shared among slaves, Phong shading. Frameless rendering draws square blocks, since a message for a single
+//! pixel would cost 16 words of overhead on the ring. A triangle with a corner outside the guard band has no screen
+//! position at T0 or T1. It is interpolated in eye space, like the spheres.
 //!
 //! Sources: Mine and Bishop, UNC TR93-005 (just-in-time pixels); Bishop et al. 1994 (frameless rendering); I3D95.
 

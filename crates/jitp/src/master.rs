@@ -1,4 +1,4 @@
-//! The master GP: it follows the beam, keeps the newest tracking data and orders strips or blocks.
+//! The master GP: it follows the beam, stores the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::ordering::OrderAssemblyWork;
@@ -18,9 +18,9 @@ struct MasterState {
     done: RefCell<VecDeque<u32>>,
 }
 
-/// Returns the programs of the master for both priorities of its board.
+/// Returns the programs of the master, for both priorities of its board.
 ///
-/// `pass` is the cost of a slave's pass over the whole display list. `view_of` predicts a view. The programs fail with
+/// `pass` is the work of a slave's pass over the whole display list. `view_of` predicts a view. The programs fail with
 /// [`Fault::Protocol`] for an unknown message.
 pub fn master(
     gp: &Gp,
@@ -93,8 +93,8 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
 
     /// Returns the time at which slaves must begin to transform for a field.
     ///
-    /// Slaves draw meanwhile, so the lead is 1.5 times the time by the timing table. The time of code is unknown in
-    /// advance, so its lead is a field (pphigs's kernels/order_rules.md).
+    /// Slaves draw strips at the same time, so the lead time is 1.5 times the TRANSFORM time by the timing table. The
+    /// time of i860 code is not known in advance, so its lead time is a whole field (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let first_strip = self.config.deadline(field, 0);
         if self.gp.runs_code() {
@@ -150,7 +150,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Gives every slave that has finished the next blocks, with the newest view.
+    /// Sends the next blocks and the newest view to every slave that has finished its blocks.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
@@ -169,7 +169,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the instant for which a batch of blocks ordered now is drawn.
+    /// Returns the time for which a batch of blocks is drawn, if it is ordered now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -180,16 +180,17 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Expected times of an order: until its blocks are on the screen, and for how long they stay there.
+/// Two expected durations: from an order until its blocks are on the screen, and from then until other blocks replace
+/// them.
 struct Expected {
     drawing: Span,
     standing: Span,
 }
 
-/// Recent times from order to order, which predict the time of the next order.
+/// Times of recent orders. They predict how long the next order takes.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
-    /// Times of the orders of the last pass over all blocks, oldest first.
+    /// Times of the orders of the last pass over all blocks of the frame, oldest first.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }
@@ -199,10 +200,10 @@ impl OrderTimes {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }
 
-    /// Records an order and returns its expected times.
+    /// Records an order and returns its expected durations.
     ///
-    /// Drawing takes as long as the slave's last order. The blocks then stay for a pass, until all blocks have been
-    /// drawn again.
+    /// Drawing is expected to take as long as the slave took for its last order. The blocks are expected to stay on the
+    /// screen for one pass, until all blocks of the frame have been drawn again.
     fn ordered(&mut self, slave: usize, now: Time) -> Expected {
         self.pass.push_back(now);
         let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };

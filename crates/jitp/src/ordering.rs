@@ -5,10 +5,10 @@ use pphigs::{TransformCost, assemble_order};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// Work of assembling an order.
+/// Work of assembling an order of the master.
 ///
-/// By the timing table the order of a field takes the time of an empty pass. Other orders take no time besides their
-/// message.
+/// By the timing table, the order for a field takes the time of an empty pass. Other orders take no time except that of
+/// their message.
 pub(crate) struct OrderAssemblyWork<'a>(pub(crate) &'a DrawingOrder);
 
 impl Work for OrderAssemblyWork<'_> {

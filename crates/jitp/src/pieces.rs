@@ -1,4 +1,4 @@
-//! Regions of a strip or of a batch of blocks: their windows and their commands.
+//! Regions of a strip or of a batch of blocks: their rectangles on the screen, and their messages.
 
 use crate::config::JitpConfig;
 use crate::drawing::{DrawnList, Window};
@@ -12,7 +12,7 @@ use pxpl5_wire::{
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// Returns the window of a region.
+/// Returns the rectangle of a region, in columns and in lines of the frame.
 pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId) -> Window {
     let [left, top, width, height] = config.grid().rectangle(region).map(|v| v as i32);
     Window {
@@ -21,7 +21,7 @@ pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId)
     }
 }
 
-/// Returns the frame line of a row of the picture.
+/// Returns the line of the frame that contains a row of the picture.
 fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
@@ -38,7 +38,8 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Divides a region's triangles and spheres, in this order, into as few messages as their maximum length permits.
+/// Divides a region's triangles and spheres into messages, triangles first. Their number is the smallest that the
+/// maximum length of a message permits.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
@@ -59,7 +60,7 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// Returns as many of the remaining primitives, of `words_each` words each, as there is room for.
+/// Returns the first part of `remaining`: as many primitives of `words_each` words each as fit into `room_words`.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;
@@ -124,7 +125,7 @@ pub(crate) fn messages(
     lists.collect()
 }
 
-/// Source of the words of a region's messages. The words of all primitives are computed once.
+/// Computes the words of a region's messages on demand. The words of all primitives are computed only once.
 #[derive(Debug)]
 struct RegionWords {
     drawing: Arc<DrawnList>,
@@ -134,7 +135,7 @@ struct RegionWords {
     target: CopyTarget,
     /// Content of each message.
     parts: Vec<Part>,
-    /// Words of all triangles, and words of all spheres.
+    /// Words of the commands of all triangles, and words of the commands of all spheres.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
 
@@ -148,7 +149,8 @@ impl RegionWords {
         })
     }
 
-    /// Appends the words of a command. The machine's configuration rejects layouts that lack a field of a command.
+    /// Appends the words of a command. It cannot fail, because the machine's configuration rejects layouts that lack a
+    /// field of a command.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");
@@ -179,7 +181,7 @@ impl CommandWords for RegionWords {
     }
 }
 
-/// Returns the words of the commands with the given numbers, from the words of all commands of a kind.
+/// Returns the words of the commands with the indices `numbers`, from the words of all commands of one kind.
 fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
     let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
     debug_assert!(end <= all.len(), "as many commands as were counted");

@@ -11,32 +11,33 @@ const BLOCKS: Word = 0x1F1E_1D02;
 const REPORT: Word = 0x1F1E_1D03;
 const DONE: Word = 0x1F1E_1D04;
 
-/// Words of a report from the host: two time stamps, position and quaternion in 64 bits each, and a header.
+/// Number of words of a report from the host. It holds two time stamps, position and quaternion in 64 bits each, and a
+/// header.
 pub(crate) const REPORT_WORDS: u32 = 20;
 
 /// A message between the boards.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
-    /// Order to transform everything for the views of a field.
+    /// Order to transform the whole display list for the views of a field.
     Field { field: PeriodNumber, views: Vec<FrameView> },
-    /// Order to draw a strip, with its own view or with the views of its field.
+    /// Order to draw a strip, from its own view or from the views of its field.
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
-    /// Order to draw blocks, beginning at a step of the random order.
+    /// Order to draw blocks of the random order, beginning at the step with index `step`.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// Notice that all reports which the host had at a time have arrived.
+    /// Notice that all reports have arrived that the host received before the time `known`.
     Report { known: Time },
     /// Notice that a slave can take another order.
     Done { slave: u32 },
 }
 
 impl DrawingOrder {
-    /// Returns the number of words, and the body of a message.
+    /// Returns the number of words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
     }
 
-    /// Encodes the order.
+    /// Encodes the message as words.
     pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
         // The first word names the order; 64-bit numbers take two words, low word first.
@@ -67,7 +68,7 @@ impl DrawingOrder {
         words
     }
 
-    /// Returns the number of words before the words of views.
+    /// Returns the number of words before the words of the first view.
     pub(crate) fn head_words(&self) -> usize {
         match self {
             Self::Field { .. } => 4,
@@ -77,11 +78,11 @@ impl DrawingOrder {
         }
     }
 
-    /// Decodes a received order.
+    /// Decodes a received message.
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for words that are no order.
+    /// [`Fault::Protocol`] for words that are no such message.
     pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
         let order = match &received.body {
             Body::Words(words) => Self::from_words(words),

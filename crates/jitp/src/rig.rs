@@ -18,7 +18,7 @@ pub(crate) const SLAVE: NodeId = NodeId(2);
 pub(crate) const RENDERER: NodeId = NodeId(3);
 pub(crate) const FIELD_US: u64 = 20_000;
 pub(crate) const ROW_US: u64 = 50;
-/// Time that a signal takes to leave a board.
+/// Time from the start of a signal until it leaves the board.
 pub(crate) const CYCLE: Span = Span(25_000);
 
 pub(crate) const fn us(us: u64) -> Time {
@@ -102,7 +102,7 @@ impl Rig {
         assert_eq!(self.bench.board.fault(), None);
     }
 
-    /// Returns the messages to a board, with the times at which they were sent.
+    /// Returns the messages to the board `node`, each with the time at which it was sent.
     pub(crate) fn sent_to(&self, node: NodeId) -> Vec<(Time, Received)> {
         let to_node = self.bench.sent().filter(|(_, message)| message.destination == node);
         to_node.map(|(time, m)| (time, Received { arrived: time, source: m.source, body: m.body.clone() })).collect()

@@ -1,4 +1,4 @@
-//! A slave GP: it draws the strips or blocks that the master orders.
+//! A slave GP: it draws the strips of lines, or the blocks, that the master orders.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
@@ -16,25 +16,25 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Number of fields that stay transformed, including the current and the next one.
+/// Number of transformed fields in a slave's memory, including the current and the next field.
 const FIELDS_KEPT: usize = 3;
 
-/// Number of parts of a slave's memory for fields: the kept ones and the one in progress. Another part is for a strip
-/// between two views.
+/// Number of parts of a slave's memory for fields: one for each stored field, and one for the field in progress. One
+/// more part is for a strip between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
 #[derive(Default)]
 struct SlaveFields {
-    /// Numbers and views of the fields to transform, oldest first.
+    /// Numbers and views of the fields that the master has ordered but that are not transformed yet, oldest first.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Transformed fields, in order, with their parts of memory.
+    /// Transformed fields, oldest first, each with its part of memory.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// Number of fields transformed since the start.
+    /// Number of fields transformed since the start of the run.
     n_transformed: usize,
 }
 
-/// A field's transforms, and the drawing that the strips of a conventional picture share.
+/// The transformed triangles of a field, and the prepared list that all strips of a conventional picture share.
 #[derive(Clone)]
 struct Field {
     ends: Ends,
@@ -43,7 +43,7 @@ struct Field {
 
 type SharedFields = Rc<RefCell<SlaveFields>>;
 
-/// Cache of transformed fields for all slaves.
+/// Cache of transformed fields, common to all slaves.
 ///
 /// All slaves hold the same display list and get the same views, so the simulator computes each field once. Every slave
 /// still spends its own simulated time.
@@ -57,7 +57,7 @@ impl std::fmt::Debug for Transforms {
 }
 
 impl Transforms {
-    /// Returns the field from the cache, or makes it by `make`.
+    /// Returns the field from the cache. If the field is not in the cache, `make` computes it.
     fn cached_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
@@ -72,10 +72,11 @@ impl Transforms {
     }
 }
 
-/// Returns the programs of slave number `index` for both priorities of its board.
+/// Returns the programs of the slave with index `index`, for both priorities of its board.
 ///
-/// Drawing strips interrupts the transforms of the next field. Every slave holds the whole display list. The programs
-/// fail with [`Fault::Memory`] if the list does not fit, and with [`Fault::Protocol`] for an unknown message.
+/// The program that draws strips interrupts the program that transforms the next field. Every slave holds the whole
+/// display list. The programs fail with [`Fault::Memory`] if the list does not fit, and with [`Fault::Protocol`] for an
+/// unknown message.
 pub fn slave(
     gp: &Gp,
     config: &JitpConfig,
@@ -110,7 +111,7 @@ struct Slave {
 }
 
 impl Slave {
-    /// Receives orders and draws.
+    /// Receives the master's orders and draws strips or blocks.
     async fn draw(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
@@ -128,7 +129,7 @@ impl Slave {
         }
     }
 
-    /// Transforms the whole display list for the newest ordered field.
+    /// Transforms the whole display list for each newly ordered field.
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
@@ -145,20 +146,20 @@ impl Slave {
         }
     }
 
-    /// Returns the part of memory for the next field.
+    /// Returns the part of memory for the next field to transform.
     fn next_part(&self) -> MemoryPart {
         let number = self.state.borrow().n_transformed % usize::from(PARTS_OF_FIELDS);
         MemoryPart::of(number, PARTS_OF_FIELDS + u8::from(self.dual().is_some()))
     }
 
-    /// Spends the time of TRANSFORM of the whole display list, once for each view of a picture.
+    /// Spends the time of TRANSFORM of the whole display list, once for each view of the picture.
     async fn transform_all(&self, views: &[FrameView], picture: PictureNumber, part: MemoryPart) -> Result<(), Fault> {
         let Self { share, pass, config, .. } = self;
         let viewport = config.extent(picture).0;
         self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
-    /// Returns the newest ordered field, and drops older orders.
+    /// Returns the newest field in the list of orders, and drops older fields.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
@@ -207,13 +208,13 @@ impl Slave {
         Ok(())
     }
 
-    /// Returns true if this field or a later one is transformed.
+    /// Returns true if this field or a later field is transformed.
     fn has_transformed(&self, field: PeriodNumber) -> bool {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// Returns the drawing of a strip from the transforms of its field, with their part of memory. Returns `None` if
-    /// the field was left out.
+    /// Returns a strip's prepared list from the transformed triangles of its field, and the part of memory that holds
+    /// them. Returns `None` if the field was skipped.
     async fn drawing_of_field(
         &self,
         field: PeriodNumber,
@@ -241,7 +242,7 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks of the random order and asks the master for more.
+    /// Draws the next blocks of the random order, and tells the master that the slave can take another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
@@ -257,10 +258,11 @@ impl Slave {
         Ok(())
     }
 
-    /// Bins the primitives of some regions, and sends all regions as one chain of messages.
+    /// Finds the primitives of some regions, and sends the messages of all regions as one chain.
     ///
-    /// All slaves draw in the same region context of a renderer. So a region's messages reserve the renderer's port
-    /// until the last one, which copies the region. Otherwise another slave could draw into the region or clear it.
+    /// All slaves draw in the same region context of a renderer. A region's messages therefore reserve the renderer's
+    /// port until the last message, which copies the region. Otherwise another slave could draw into the region or
+    /// clear it.
     async fn send(
         &self,
         picture: PictureNumber,

@@ -1,4 +1,4 @@
-//! Numbers of this firmware, apart from the processor's timing table.
+//! Times of this firmware that the processor's timing table lacks.
 
 parameters::parameter_table! {
     /// Times of just-in-time firmware.

@@ -6,21 +6,22 @@ use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Span;
 
-/// Work of a pass over all primitives for each of one or two views.
+/// Work of a pass over all primitives, for one view or for each of two views.
 ///
-/// The pass makes the commands of all primitives without bins. The primitives of a strip or block are searched later.
+/// The pass makes the commands of all primitives and fills no bins. The primitives in a strip or block are searched
+/// later.
 pub(crate) struct WholeList<'a> {
     /// The whole display list.
     pub(crate) share: &'a Share,
-    /// Cost of a pass by the timing table.
+    /// Work of one pass, for the timing table.
     pub(crate) pass: TransformCost,
-    /// One view, or the views of start and end.
+    /// One view, or two views for the start and the end of a field.
     pub(crate) views: &'a [FrameView],
-    /// Field or frame that the views show.
+    /// Lines of the field or frame that the views show.
     pub(crate) viewport: Viewport,
-    /// Layout of pixel memory for which commands are encoded.
+    /// Layout of pixel memory; commands are encoded for this layout.
     pub(crate) layout: Layout,
-    /// Part of memory that receives the commands of one view, or the triangles' positions in two views.
+    /// Part of memory for the result: commands for one view, or positions of triangles for two views.
     pub(crate) part: MemoryPart,
 }
 
@@ -29,8 +30,8 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// Runs the code. For one view it keeps commands with their boxes, for two views the positions of triangles in
-    /// both.
+    /// Runs the code. For one view it stores commands with their bounding boxes. For two views it stores the positions
+    /// of triangles in both views.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);
@@ -50,7 +51,8 @@ impl Work for WholeList<'_> {
     }
 }
 
-/// Returns the picture that selects the kernels: one without bins, since regions are searched later.
+/// Returns the picture parameters that select the kernels. No bins are filled, since the primitives in regions are
+/// searched later.
 pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
     Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

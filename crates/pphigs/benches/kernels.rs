@@ -1,7 +1,7 @@
-//! Host time per simulated instruction of the triangle kernels: with memoized clocks, with all clocks counted, and
-//! without timing.
+//! Measures the host computer's time for each simulated instruction of the triangle kernels. There are three modes:
+//! with memoized clock counts, with all clocks counted, and without timing.
 //!
-//! Unlike the loops of crates/i860/benches, these kernels do not stay in the caches.
+//! Unlike the loops in crates/i860/benches, these kernels do not stay in the simulated caches.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
@@ -19,7 +19,7 @@ fn modes() -> [(&'static str, Config); 3] {
     [("memoised", Config::cycle()), ("counted", counted), ("functional", Config::functional())]
 }
 
-/// Benchmarks the kernels on triangles of about the size in the figures.
+/// Benchmarks the kernels on triangles of about the size that the published figures use.
 fn kernels(c: &mut Criterion) {
     let mut group = c.benchmark_group("kernels");
     let input = triangles(500, 0.12, 1);

@@ -1,8 +1,9 @@
-//! Work of a board before the triangles of a pass: edits of the display list, and placement of its structures.
+//! Work of a board before the first triangle of a pass: it edits the display list and places the list's structures for
+//! an eye.
 //!
-//! Both are code in the style of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version of the
-//! kernels. The code computes the view-dependent part of each structure's parameter block before the pass. The host
-//! side then writes the block that a kernel reads, which is equal in every word (tests/begin.rs).
+//! Both steps are code in the style of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version
+//! of the kernels. The code computes the view-dependent part of each structure's parameter block before the pass. The
+//! simulator then writes the block that a kernel reads. That block is equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -21,19 +22,19 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-/// Number of structures whose matrices fit in memory.
+/// Largest number of structures whose matrices fit in memory.
 const MOST_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
-/// Number of words of an edit: the structure's number and its matrix.
+/// Number of words of an edit: the structure's index and its matrix.
 const EDIT_WORDS: u32 = 17;
 
 const _: () =
     assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as endless.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit is taken for an endless loop.
 const BUDGET: u64 = 20_000;
 
-/// Work of EDIT: stores the edited matrices of a view.
+/// Work of the EDIT step, which stores the new model matrices of a view's edited structures.
 #[derive(Clone, Copy, Debug)]
 pub struct EditWork<'a>(pub &'a FrameView);
 
@@ -61,19 +62,19 @@ impl Work for EditWork<'_> {
     }
 }
 
-/// Work at the beginning of a pass over the display list, for one eye or both.
+/// Work at the beginning of a pass over the display list: it resets bins and places structures, for one eye or both.
 #[derive(Clone, Debug)]
 pub struct PassStartWork {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
-    /// Number of bins to reset for each eye; 0 if there are no bins.
+    /// Number of bins to reset for each eye, 0 if there are no bins.
     bins: u32,
     /// True for each structure to place, by its index in the display list; `None` places all.
     chosen: Option<Arc<[bool]>>,
 }
 
 impl Share {
-    /// Returns the work at the beginning of a pass for some eyes of a view.
+    /// Returns the work at the beginning of a pass. `eyes` are the indices of the view's eyes that the pass draws.
     #[must_use]
     pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> PassStartWork {
         let eyes = eyes.iter().map(|eye| place_cached(&self.list, view, *eye, picture.viewport)).collect();
@@ -96,12 +97,12 @@ impl PassStartWork {
         Self { bins: 0, ..self }
     }
 
-    /// Returns the same work for the chosen structures only.
+    /// Returns the same work for the chosen structures only. `chosen` has one element for each structure.
     pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns the structures of an eye to place. Structures that cannot be drawn are left out.
+    /// Returns those structures of an eye that the work places. Structures that cannot be drawn are left out.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
@@ -132,19 +133,19 @@ impl Work for PassStartWork {
     }
 }
 
-/// Returns the cost, by the timing table, of the beginning of a pass for some eyes. Structures that cannot be drawn are
-/// not placed.
+/// Returns the counted work at the beginning of a pass, for the timing table. `eyes` has the structures of each eye.
+/// Structures that cannot be drawn are not placed.
 pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
     let drawn = |place: &&PlacedStructure| place.transform.is_some();
     TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
 }
 
 impl PlacedStructure {
-    /// Computes the view-dependent part of the parameter block on a board, and returns the time.
+    /// Computes the view-dependent part of the parameter block on a board, and returns the simulated time.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or the board has no room for its data.
+    /// [`ProcessorFault`] if the code does not end, or if the board has no room for its data.
     pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
         let [x, y, z] = list.towards_light.to_array();
@@ -161,8 +162,8 @@ impl PlacedStructure {
 }
 
 impl PlacedStructure {
-    /// Writes the view-independent part of the parameter block of spheres, and returns its address, or 0 if no sphere
-    /// is drawn.
+    /// Writes the view-independent part of the spheres' parameter block. Returns the address of the block, or 0 if the
+    /// structure draws no sphere.
     fn prepare_spheres(&self, processor: &mut Processor) -> Result<Word, ProcessorFault> {
         let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
             return Ok(0);

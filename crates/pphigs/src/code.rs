@@ -1,8 +1,9 @@
-//! TRANSFORM as work of a board: timed by the timing table, or run as i860 code over the board's memory.
+//! TRANSFORM as work of a board. The time comes from the timing table, or from i860 code that runs over the board's
+//! memory.
 //!
 //! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
-//! Each structure of the display list is one call of either kernel. All triangles come before the spheres, so that bins
-//! hold commands in the order in which they are sent.
+//! Such code is called a *kernel*. Each structure of the display list takes one call of each of the two kernels. All
+//! triangles come before the spheres, so that bins hold commands in the order in which they are sent.
 
 use crate::begin::{PassStartWork, beginning};
 use crate::cost::TransformCost;
@@ -30,54 +31,57 @@ use std::hash::Hash;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Bytes of a triangle in the display list.
+/// Size of a triangle in the display list, in bytes.
 pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
-/// Largest number of triangles that clipping makes of one: six planes leave up to nine corners.
+/// Largest number of triangles that clipping makes of one triangle. Clipping against six planes leaves a polygon of up
+/// to nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds the limit counts as
-/// endless.
+/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds its limit is taken for
+/// an endless loop.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
-/// Returns the instruction limit for some primitives.
+/// Returns the instruction limit of a call for the given number of primitives.
 pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }
 
-/// The TRANSFORM of a share for one eye, or for both eyes.
+/// The TRANSFORM of one graphics processor's share of the primitives, for one eye or for both eyes.
 ///
-/// Both eyes take one pass if a kernel supports that ([`Kernel::can_serve_both_eyes`]), otherwise one pass each.
+/// Some kernels transform both eyes in one pass over the primitives ([`Kernel::can_serve_both_eyes`]). With other
+/// kernels each eye takes its own pass.
 #[derive(Clone, Copy, Debug)]
 pub struct TransformWork<'a> {
-    /// The TRANSFORM results of each eye.
+    /// Result of the TRANSFORM for each eye.
     pub passes: &'a [Arc<Pass>],
-    /// Bin context of the first eye, 0 or 1. The second eye uses the other context.
+    /// Bin context of the first eye, 0 or 1. A bin context is one of two sets of bins. The second eye uses the other
+    /// context.
     pub context: u8,
-    /// True if the TRANSFORM includes the beginning of a pass over the display list.
+    /// True if the work includes the preparation of structures before the first primitive ([`PassStartWork`]).
     pub begins: bool,
 }
 
-/// Result of the kernels in the memory of a board.
+/// Time of the kernels, and addresses of their output in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KernelOutput {
-    /// Simulated time of the kernels.
+    /// Simulated time of all kernels.
     pub span: Span,
-    /// Simulated time of the spheres, which is included in `span`.
+    /// Simulated time of the kernels for spheres, which is included in `span`.
     pub of_spheres: Span,
-    /// Addresses of the commands: first triangles, then spheres.
+    /// Address range of the commands: first those of triangles, then those of spheres.
     pub commands: Range<u32>,
     /// Address of the first sphere's command.
     pub spheres: u32,
-    /// Address ranges of the bins' entries. An entry is the address of a command. Without binning the bins hold no
-    /// triangles.
+    /// Address range of each bin's entries. An entry is the address of a command. If every region gets all triangles,
+    /// the bins hold spheres only.
     pub bins: Vec<Range<u32>>,
 }
 
 impl KernelOutput {
-    /// Returns the number of entries in all bins.
+    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
@@ -130,11 +134,11 @@ impl TransformWork<'_> {
 }
 
 impl Share {
-    /// Stores the whole share in a board's memory, even if this share is only a clump.
+    /// Stores all primitives of the graphics processor in a board's memory, even if this share is only a clump of them.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] if the share does not fit.
+    /// [`ProcessorFault::Unmapped`] if the primitives do not fit.
     pub fn install(&self, processor: &mut Processor) -> Result<(), ProcessorFault> {
         for (place, number) in (0..).zip(self.all_triangles()) {
             let words = display_list_words(&self.list.triangle(number));
@@ -158,7 +162,7 @@ impl Share {
     }
 }
 
-/// Number of bytes that a view's output needs: commands, and entries of each bin.
+/// Memory that a view's output needs: bytes of all commands, and number of entries of each bin.
 pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
@@ -186,8 +190,8 @@ struct Places {
     bins: Vec<u32>,
 }
 
-/// The continuation of a kernel: address of the next command, and of the table of bins or, if boxes are kept, of the
-/// next box.
+/// Addresses at which a kernel continues its output. `command` is the address of the next command. `table` is the
+/// address of the table of bins or, if the kernel stores bounding boxes instead, of the next box.
 #[derive(Clone, Copy)]
 pub(crate) struct Next {
     pub(crate) command: u32,
@@ -195,15 +199,15 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Returns the continuation after a call of a kernel.
+    /// Reads the addresses at which the next kernel continues from the registers after a call.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
     }
 }
 
-/// Destination of a view's output: its bin context, its index among the views in that context, and the address of the
-/// commands.
+/// Destination of a view's output: its bin context, its index among the views in that context, and the address of its
+/// first command.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
     pub(crate) context: u8,
@@ -211,17 +215,17 @@ pub(crate) struct Destination {
     pub(crate) begin: u32,
 }
 
-/// Marks of the primitives that belong to a view: words in which the view's bit is set.
+/// Addresses of the mark words, one for each primitive, and the bit that is set for primitives of this view.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
-    /// Address of the word of the first triangle that the GP holds.
+    /// Address of the mark word of the GP's first triangle.
     pub(crate) triangles: u32,
     pub(crate) spheres: u32,
     pub(crate) bit: Word,
 }
 
 impl Pass {
-    /// Returns the cost of the TRANSFORM by the timing table, without the beginning of the pass.
+    /// Returns the counted work of the TRANSFORM for the timing table, without the preparation of structures.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
@@ -231,11 +235,11 @@ impl Pass {
     /// Runs the kernels for all primitives on a board that holds the display list. `context` is one of the board's two
     /// bin contexts.
     ///
-    /// Returns `None` for a picture that has no kernel.
+    /// Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// [`ProcessorFault`] if the code does not end, or if its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
         let needs = self.needs(kernel, self.transformed());
@@ -243,9 +247,10 @@ impl Pass {
         self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
     }
 
-    /// Runs the kernels for this eye (the left one) and the right one, with a single pass over the triangles.
+    /// Runs the kernels for this eye (the left one) and the right eye, with a single pass over the triangles.
     ///
-    /// Returns `None` if no kernel serves both eyes. The time of all triangles is in the left eye's output.
+    /// Returns `None` if no kernel serves both eyes. The left eye's output contains the time of the triangles of both
+    /// eyes.
     ///
     /// # Errors
     ///
@@ -277,9 +282,9 @@ impl Pass {
         Ok(Some([of_left, of_right]))
     }
 
-    /// Runs the triangles of both eyes. Returns the time, and where the commands of each eye end.
+    /// Runs the triangles of both eyes. Returns the time, and the addresses at which the output of each eye continues.
     ///
-    /// A structure that only one eye can draw goes through the kernel of one eye.
+    /// A structure that only one eye can draw is transformed by the kernel for one eye.
     fn run_triangles_for_both(
         &self,
         right: &Self,
@@ -327,7 +332,8 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Runs the kernels for the marked primitives, or for all, with a given destination.
+    /// Runs the kernels for the primitives with a set mark bit, or for all primitives if `marks` is `None`. The output
+    /// goes to the destination `to`.
     pub(crate) fn run_kernels(
         &self,
         processor: &mut Processor,
@@ -343,8 +349,8 @@ impl Pass {
         self.run_rest(processor, kernel, &places, to, triangles, marks)
     }
 
-    /// Runs the spheres of a view and records the ends of its bins. The triangles are done, and the table of bins is
-    /// written.
+    /// Runs the spheres of a view and records the end of each bin. The caller has already run the triangles and written
+    /// the table of bins.
     fn run_rest(
         &self,
         processor: &mut Processor,
@@ -363,7 +369,7 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Runs the triangles. Returns the time, and where their commands end.
+    /// Runs the triangles. Returns the time, and the addresses at which the output continues.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -392,7 +398,7 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Runs the spheres. Returns the time, and where their commands end.
+    /// Runs the spheres. Returns the time, and the addresses at which the output continues.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -428,13 +434,14 @@ impl Pass {
         self.picture().kernel(schedule)
     }
 
-    /// Returns the command lengths of a triangle and a sphere, in words, if code fills bins of both; otherwise `None`.
+    /// Returns the words of a triangle command and of a sphere command. Returns `None` if code does not fill the bins
+    /// of both.
     pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
         let kernel = self.kernel(version).filter(|_| self.is_binned())?;
         Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
     }
 
-    /// Returns true if renderers shade the pixels at the end of a region.
+    /// Returns true if renderers compute the colours of pixels at the end of a region (Phong shading).
     pub(crate) fn shades_at_pixels(&self) -> bool {
         self.picture().shading == Shading::Phong
     }
@@ -443,7 +450,8 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// Returns the words that all triangle commands have in common, taken from a command of zeros.
+    /// Returns the words that all triangle commands have in common. They are read from an encoded command whose values
+    /// are zero.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
@@ -460,12 +468,12 @@ impl Pass {
         words
     }
 
-    /// Returns the structures with their triangles, as indices among the triangles that the GP holds.
+    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the GP holds.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns the structures with their spheres, as indices among the spheres that the GP holds.
+    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the GP holds.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -480,11 +488,11 @@ impl Pass {
         calls.filter(|call| !call.2.is_empty())
     }
 
-    /// Returns the memory that a kernel needs.
+    /// Returns the memory that a kernel needs for its output.
     ///
-    /// The kernel needs room for a command of every given primitive, visible or not, for the pieces of clipped
-    /// triangles, and for a command that may be dropped. The accounts of [`pxpl5_gp::Memory`] are smaller, since they
-    /// count only visible primitives.
+    /// The kernel needs room for a command of every given primitive, visible or not, and for the pieces of clipped
+    /// triangles. It also needs room for one command that it may drop. [`pxpl5_gp::Memory`] counts fewer bytes, since
+    /// it counts only visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -497,14 +505,14 @@ impl Pass {
         OutputSize { commands, entries }
     }
 
-    /// Returns the number of triangle commands that need room, as defined by [`Pass::needs`].
+    /// Returns the largest number of triangle commands for which [`Pass::needs`] reserves memory.
     pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
         given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 
-/// Stores the bounds of a context's bins for the tokens of its regions, since the other context will use the table of
-/// bins.
+/// Stores the start and end address of each bin of a context, for the code that hands over regions. The table of bins
+/// cannot keep them, because the other context will overwrite it.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,
@@ -516,7 +524,8 @@ fn note_bins(
     processor.write(bins(to.context, to.view), &words)
 }
 
-/// A call of a kernel for some primitives.
+/// One call of a kernel: address and number of the primitives, destination of the output, and address of the
+/// parameters.
 struct Call {
     first: u32,
     count: u32,
@@ -530,9 +539,10 @@ impl Call {
         [(16, self.first), (17, self.count), (18, command), (2, STACK), (19, table), (20, self.parameters)]
     }
 
-    /// Calls the kernel for all primitives, or for the runs of marked primitives.
+    /// Calls the kernel once for all primitives, or once for each run of consecutive marked primitives.
     ///
-    /// `marked` holds the address of the mark words, the bit that selects a primitive, and the bytes of a primitive.
+    /// `marked` holds the address of the mark words, the bit that selects a primitive, and the size of a primitive in
+    /// bytes.
     fn run(
         &self,
         processor: &mut Processor,
@@ -549,7 +559,7 @@ impl Call {
     }
 }
 
-/// Returns the kernel for spheres that belongs to a kernel for triangles.
+/// Returns the kernel for spheres that draws the same kind of picture as a kernel for triangles.
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
     SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
 }
@@ -557,7 +567,7 @@ pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
 /// A cache of assembled programs.
 pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-/// Returns the program of a kernel, which is assembled at its first use.
+/// Returns the program of a kernel from the cache. The program is assembled at its first use.
 pub(crate) fn kept<K: Copy + Eq + Hash>(
     programs: &Programs<K>,
     kernel: K,
@@ -567,11 +577,11 @@ pub(crate) fn kept<K: Copy + Eq + Hash>(
     Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }
 
-/// Source of the code that calls a kernel for runs of primitives.
+/// Name and source of the code that calls a kernel for each run of consecutive marked primitives.
 const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
 
-/// Returns the program of a kernel and its clipper, assembled at its first use. `by_runs` adds the code for runs of
-/// primitives.
+/// Returns the program of a kernel for triangles and its clipper, assembled at its first use. `by_runs` adds the code
+/// that calls the kernel for each run of marked primitives.
 fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), assembled)
@@ -590,8 +600,8 @@ fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     }
 }
 
-/// Returns the program of a kernel for spheres, assembled at its first use. `by_runs` adds the code for runs of
-/// primitives.
+/// Returns the program of a kernel for spheres, assembled at its first use. `by_runs` adds the code that calls the
+/// kernel for each run of marked primitives.
 fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {

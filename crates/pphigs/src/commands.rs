@@ -1,4 +1,4 @@
-//! Messages of renderer commands: the kinds of their commands, and their words on demand.
+//! Messages of renderer commands. A message lists the kinds of its commands at once; its words are computed on demand.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -26,13 +26,14 @@ use std::sync::Arc;
 pub struct RegionEnvelope {
     /// True if the region's context is selected and cleared first.
     pub begin: bool,
-    /// True if all pixels are shaded afterwards. Only Phong pictures are shaded this way.
+    /// True if the commands begin with the selection and clearing of the region's context.
     pub shade: bool,
-    /// Order to copy the region to the frame buffer at the end, if any.
+    /// Copy of the region to the frame buffer at the end, if any.
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages that hold a region's bin in its envelope, as few as their maximum length permits.
+/// Returns the messages with the commands of a region's bin and the commands of its envelope. Their number is the
+/// smallest that the maximum length of a message permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -50,7 +51,8 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Returns a message that only copies regions, each from its context.
+/// Returns a message that copies regions to a frame buffer. Each region is copied from the pixel-memory context that
+/// its order names.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -77,11 +79,11 @@ struct RegionPart {
 
 /// Iterator over the messages of a region: first all triangles, then all spheres.
 struct Parts {
-    /// Triangles that are in no message yet.
+    /// Range of triangles that no message contains yet.
     triangles: Range<u32>,
     spheres: Range<u32>,
     words_each: [u32; 2],
-    /// True if every message selects its context.
+    /// True if every message must begin with the selection of its context.
     selects: bool,
     clears_next: bool,
     ending_words: u32,
@@ -104,8 +106,8 @@ impl Parts {
 }
 
 impl Parts {
-    /// Returns a message by its number. Messages between the first and the last one with triangles are alike, so they
-    /// are skipped at once.
+    /// Returns the message at index `number`. All messages between the first and the last one with triangles are
+    /// equally long, so they are skipped in one step.
     fn skip_to(mut self, number: u32) -> Option<RegionPart> {
         if number == 0 {
             return self.next();
@@ -122,7 +124,7 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// Returns the next message. A message that would only select a context is left out.
+    /// Returns the next message. A message whose only command would be the selection of a context is left out.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;
@@ -147,7 +149,8 @@ impl Iterator for Parts {
     }
 }
 
-/// Removes and returns as many of the remaining primitives, of `words_each` words each, as there is room for.
+/// Removes primitives of `words_each` words each from the front of `remaining`, as many as fit into `room_words`, and
+/// returns them.
 fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
     let taken = std::mem::replace(&mut remaining.start, end)..end;
@@ -184,19 +187,20 @@ impl Pass {
         }
     }
 
-    /// Returns true if all pixels of a region with this envelope are shaded at its end.
+    /// Returns true if a region with this envelope ends with the shading of all its pixels.
     fn shades(&self, envelope: RegionEnvelope) -> bool {
         envelope.shade && self.picture().shading == Shading::Phong
     }
 
-    /// Returns the number of words of the end of a region with this envelope.
+    /// Returns the number of words of the commands at the end of a region: shading and copy, as far as the envelope has
+    /// them.
     fn ending_words(&self, envelope: RegionEnvelope) -> u32 {
         CommandKind::Shade.words() * u32::from(self.shades(envelope))
             + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())
     }
 
-    /// Returns the bytes of the renderer commands of all screen primitives. Each command is held once (TR94: bins point
-    /// to commands).
+    /// Returns the bytes of the renderer commands of all primitives on the screen. Each command is stored once, since
+    /// bins hold pointers to commands (TR94).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.screen_counts();
@@ -204,10 +208,11 @@ impl Pass {
     }
 }
 
-/// Bytes of a bin's entry, a pointer: the commands are held once, for all regions (TR94).
+/// Size in bytes of one entry of a bin. An entry is a pointer, because each command is stored once for all regions
+/// (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
-/// Bytes of a GP's memory for program, stacks and message buffers, under every firmware.
+/// Bytes of a GP's memory for program, stacks and message buffers, the same in every pipeline.
 ///
 /// Assumed: no paper gives the number. TR94's GPs have 8 MB each, so a megabyte makes no difference.
 pub const PROGRAM_BYTES: u64 = 1 << 20;
@@ -216,7 +221,7 @@ fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Source of the words of a region's messages.
+/// Computes the words of a region's messages on demand.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
@@ -243,12 +248,13 @@ impl CommandWords for RegionWords {
 }
 
 impl RegionWords {
-    /// Returns the content of a message, which is empty if there is no message of this number.
+    /// Returns the content of the message at index `number`. The content is empty if there is no such message.
     fn part(&self, number: u32) -> RegionPart {
         Parts::new(&self.pass, self.region, self.envelope).skip_to(number).unwrap_or_default()
     }
 
-    /// Appends all commands of a message, with the given triangles.
+    /// Appends all commands of a message. `triangles` are the triangles to draw, which may be fewer than those of the
+    /// message.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
         // Start of the region: context and clear.
@@ -404,13 +410,14 @@ impl RegionWords {
     }
 }
 
-/// Appends the words of a command. The machine's configuration rejects layouts that lack a field of a command.
+/// Appends the words of a command. It cannot fail, because the machine's configuration rejects layouts that lack a
+/// field of a command.
 fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     let encoded = command.encode(layout, out);
     debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
-/// Converts light and highlight to the formats of the shading command. The eye looks along -z.
+/// Converts light and highlight to the number formats of the shading command. The eye looks along -z.
 ///
 /// Without a light all intensities are zero. Matte surfaces have no highlight.
 #[must_use]
@@ -427,20 +434,21 @@ pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     }
 }
 
-/// Iterator over batches of a bin's entries, in order.
+/// Iterator over the entries of a bin, in order, in batches of up to [`LANES`] triangles.
 struct SetupBatches<'a> {
     entries: &'a [BinEntry],
     list: &'a DisplayList,
-    /// The structure's vertices with their colours or normals.
+    /// The structure's vertices with their colours (Gouraud shading) or normals (Phong shading).
     vertices: &'a [SurfaceVertex],
     first: usize,
     lanes: TriangleLanes<'a>,
 }
 
 enum SetupBatch<'a> {
-    /// Triangles that are set up together. Invisible triangles among them have placeholders.
+    /// Triangles whose edges and gradients are computed together. An invisible triangle takes a place in the batch
+    /// without data.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a clipped triangle.
+    /// A piece of a clipped triangle, which forms a batch of its own.
     Clipped(&'a BinEntry),
 }
 
@@ -468,7 +476,8 @@ impl SetupBatches<'_> {
     }
 }
 
-/// Returns the entry's piece among the pieces that `clip` produces; `None` if the triangle is invisible.
+/// Returns the piece with the entry's index among the pieces that `clip` produces. Returns `None` if the triangle is
+/// invisible.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
@@ -513,7 +522,7 @@ fn fixed_direction(v: [f32; 3]) -> [i16; 3] {
     v.map(|c| (c * 1024.0) as i16)
 }
 
-/// Converts a share of 0 to 1 to units of 1/256.
+/// Converts a fraction from 0 to 1 to units of 1/256.
 fn fixed_part(part: f32) -> u8 {
     (part * 256.0).clamp(0.0, 255.0) as u8
 }
@@ -530,7 +539,7 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Source of the words of a message that only copies.
+/// Computes the words of a message that only copies regions.
 #[derive(Debug)]
 struct CopyWords {
     layout: Layout,

@@ -6,9 +6,9 @@ use crate::structure::DisplayStructure;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
-/// Counts of the work of a TRANSFORM. Each count has a time in the timing table.
+/// Counted work of a TRANSFORM. Each count has a time per unit in the timing table.
 ///
-/// The simulation uses whole counts (`u64`). An analytic model may use means (`f64`).
+/// The simulation uses whole counts (`u64`). An analytic model can use mean counts (`f64`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransformCost<N = u64> {
     /// Number of started passes over a display list, at [`GpTiming::pass_ns`] each.
@@ -31,16 +31,16 @@ impl TransformCost {
     const NOTHING: Self =
         Self { passes: 0, structures: 0, sphere_views: 0, triangles: 0, spheres: 0, clipped: 0, entries: 0 };
 
-    /// The cost of starting a pass over a display list, without its structures.
+    /// Work of starting a pass over a display list, without its structures.
     pub const PASS: Self = Self { passes: 1, ..Self::NOTHING };
 
-    /// Returns the cost of transforming primitives, without the start of the pass and without bin entries.
+    /// Returns the work of transforming primitives, without the start of the pass and without bin entries.
     #[must_use]
     pub const fn primitives(counts: PrimitiveCounts) -> Self {
         Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, ..Self::NOTHING }
     }
 
-    /// Returns the cost of starting a pass over some structures for one eye, before its first primitive.
+    /// Returns the work of starting a pass over the given structures for one eye, before its first primitive.
     #[must_use]
     pub fn beginning<'a>(structures: impl IntoIterator<Item = &'a DisplayStructure>) -> Self {
         structures.into_iter().fold(Self::PASS, |cost, structure| Self {
@@ -50,8 +50,8 @@ impl TransformCost {
         })
     }
 
-    /// Returns the cost of a whole pass over a display list for one eye, without bin entries. `counts` are the
-    /// transformed primitives.
+    /// Returns the work of a whole pass over a display list for one eye, without bin entries. `counts` are the numbers
+    /// of transformed primitives.
     #[must_use]
     pub fn pass_over(list: &DisplayList, counts: PrimitiveCounts) -> Self {
         let begin = Self::beginning(&list.structures);

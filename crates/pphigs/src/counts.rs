@@ -1,4 +1,4 @@
-/// Numbers of primitives or of their commands.
+/// Number of triangles and number of spheres, or the numbers of their commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PrimitiveCounts {
     /// Number of triangles, or of triangle commands.

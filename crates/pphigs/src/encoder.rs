@@ -11,8 +11,8 @@ pub(crate) enum Encoder {
 }
 
 impl Encoder {
-    /// Creates the encoder of a picture. Returns `None` if the layout lacks a field; the machine's configuration
-    /// rejects such layouts.
+    /// Creates the encoder of a picture's triangle commands. Returns `None` if the layout of pixel memory lacks a
+    /// field. The machine's configuration rejects such layouts.
     pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
             Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),

@@ -1,8 +1,8 @@
-//! Handover of a region's bin with its token, as work of a board: lists the messages of the region's commands as pieces
-//! of memory.
+//! Handover of a region's bin to the ring, as work of a board. The code lists the messages of the region's commands as
+//! pieces of memory.
 //!
-//! The code is kernels/token.s. It follows the bin's entries, which TRANSFORM's code has written. The commands are not
-//! moved. By the timing table each entry takes `token_entry_ns`.
+//! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
+//! where they are in memory. By the timing table each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
@@ -14,14 +14,14 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionId, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Work of handing over the bin of a region in its envelope.
+/// Work of handing over the bin of one region, with the commands of its envelope.
 #[derive(Clone, Copy, Debug)]
 pub struct BinHandoffWork<'a> {
-    /// The TRANSFORM that filled the bin.
+    /// TRANSFORM result that contains the bin.
     pub pass: &'a Pass,
     /// Bin context, 0 or 1.
     pub context: u8,
-    /// Index of the view among the views that share the context; 0 if there is only one.
+    /// Index of the view among the views that share the bin context, 0 if there is only one view.
     pub view: u8,
     /// Region whose bin is handed over.
     pub region: RegionId,
@@ -29,18 +29,18 @@ pub struct BinHandoffWork<'a> {
     pub envelope: RegionEnvelope,
 }
 
-/// The pieces of one message: address and length in words of each.
+/// The pieces of memory that make up one message: address and length in words of each piece.
 pub type MessagePieces = Vec<[Word; 2]>;
 
-/// Bytes of a piece in the list of pieces.
+/// Bytes of one piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Largest number of bin entries. Messages hold 20 commands or more, and each message needs two further pieces for its
+/// Largest number of bin entries of a region. A message holds 20 commands or more, and needs two further pieces for its
 /// envelope.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as endless.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit is taken for an endless loop.
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
@@ -73,10 +73,11 @@ impl Work for BinHandoffWork<'_> {
 }
 
 impl BinHandoffWork<'_> {
-    /// Returns the parameters of the envelope.
+    /// Returns the parameters that describe the envelope.
     ///
-    /// They are: address and words of the region's start, of every other message's start, and of the region's end; and
-    /// the words of an empty message.
+    /// The first six parameters are address and length in words of three command sequences. The sequences are the start
+    /// of the region, the start of every further message, and the end of the region. The seventh parameter is the
+    /// number of words of an empty message.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;
@@ -90,7 +91,7 @@ impl BinHandoffWork<'_> {
         [at_begin, begin, at_again, again, at_end, end, nothing]
     }
 
-    /// Reads the messages that the last call of the code has listed.
+    /// Reads the messages that the last run of the code has listed.
     ///
     /// # Errors
     ///
@@ -111,9 +112,10 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
     (0..count).map(message).collect()
 }
 
-/// Returns the source of the code that lists messages.
+/// Returns the source of the code that divides a bin into messages.
 ///
-/// A message has at most `most` words without the end of a region, and at most `whole` words with it.
+/// A message has at most `most` words if it lacks the end of the region, and at most `whole` words if it contains the
+/// end.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }

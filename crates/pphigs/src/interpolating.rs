@@ -1,8 +1,8 @@
-//! A dual display list as work of a board.
+//! Interpolation of triangles between two views (a *dual display list*), as work of a board.
 //!
-//! The code records each triangle's positions in the views of a field's start and end. Then it makes the commands of a
-//! strip for a view in between. The code is `ends.s`, `blend.s` and `between.s` of `pxpl5-geometry`; its rules are the
-//! project's own (kernels/between_rules.md).
+//! The code records each triangle's positions in the two views at the start and at the end of a field. It then makes
+//! the commands of a strip, a group of consecutive lines, for a view in between. The code is `ends.s`, `blend.s` and
+//! `between.s` of `pxpl5-geometry`. Its rules are the project's own (kernels/between_rules.md).
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
@@ -20,27 +20,27 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex};
 
-/// Bytes of the record of a triangle in two views.
+/// Bytes of the record of one triangle's positions in two views.
 const RECORD_BYTES: u32 = 4 * ENDS_WORDS as u32;
 const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 
-/// Work of recording the positions of all triangles in two views, in a part of memory.
+/// Work that records the positions of all triangles in two views, in a part of memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// The first and the second view.
     pub views: [&'a FrameView; 2],
-    /// Picture that both views are drawn for.
+    /// Picture parameters of both views.
     pub picture: Picture,
     /// Part of memory that receives the records.
     pub part: MemoryPart,
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Runs the code on a board that holds the display list, including the beginning of both passes.
+    /// Runs the code on a board that holds the display list. The preparation of structures for both views is included.
     ///
-    /// Returns `None` for a picture that has no kernel.
+    /// Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///
@@ -68,28 +68,30 @@ impl TriangleEndsRecorder<'_> {
     }
 }
 
-/// Returns the address of the first triangle, the number of triangles, and the address of the first triangle's record.
+/// Returns three values: address of the first triangle, number of triangles, and address of the first triangle's
+/// record.
 const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     let first = held.start as u32;
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
 }
 
-/// Work of making the commands of a strip for a view between two views: its triangles, and all spheres, with their
-/// boxes.
+/// Work that makes the commands of a strip of lines, for a view between two recorded views. It makes commands and
+/// bounding boxes of the triangles near the strip and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The first and the second view, whose triangles have been recorded.
+    /// The first and the second view. A [`TriangleEndsRecorder`] has recorded their triangles.
     pub views: [&'a FrameView; 2],
-    /// View in between, which is used for spheres, light and clipped triangles.
+    /// View in between. Spheres, light source and clipped triangles are computed from it, without interpolation.
     pub between: &'a FrameView,
-    /// Position between the first view (0) and the second view (1).
+    /// Position of the view in between, on a scale from the first view (0) to the second view (1).
     pub part_of_way: f64,
-    /// True if triangles are interpolated in eye space before the divide, false if on the screen.
+    /// True if triangles are interpolated in eye space, before the perspective division. False if they are interpolated
+    /// on the screen.
     pub in_eye_space: bool,
-    /// Least and greatest distance from the frame's top, in 1/16 px, of triangles that may be on the strip at any
-    /// position.
+    /// Smallest and greatest distance from the frame's top, in 1/16 px. Only triangles within these limits can touch
+    /// the strip at any position between the views.
     pub near: [i32; 2],
     /// Picture that contains the strip.
     pub picture: Picture,
@@ -100,7 +102,8 @@ pub struct StripInterpolation<'a> {
 }
 
 impl StripInterpolation<'_> {
-    /// Runs the code on a board that holds the recorded positions. Returns `None` for a picture that has no kernel.
+    /// Runs the code on a board that holds the recorded positions. Returns `None` if no kernel can draw this kind of
+    /// picture.
     ///
     /// # Errors
     ///
@@ -116,7 +119,7 @@ impl StripInterpolation<'_> {
         Ok(Some(blended + beginning + of_kernels))
     }
 
-    /// Interpolates the matrices of the views: those of the eyes and of the edited structures.
+    /// Interpolates the matrices of the two views: the matrices of the eyes and of the edited structures.
     fn blend(&self, processor: &mut Processor, kernel: Kernel) -> Result<Span, ProcessorFault> {
         let [from, to] = self.views.map(elements);
         let [low, high] = [self.part_of_way.to_bits(), self.part_of_way.to_bits() >> 32].map(|word| word as Word);
@@ -161,14 +164,14 @@ impl StripInterpolation<'_> {
     }
 }
 
-/// Returns the matrix elements to interpolate. Projections are left out, since both views have the same.
+/// Returns the matrix elements to interpolate. Projection matrices are left out, since they are the same in both views.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));
     matrices.flat_map(|matrix| matrix.to_cols_array()).map(f32::to_bits).collect()
 }
 
-/// Returns the program of all steps for a kernel, with its clipper.
+/// Returns one program with the code of all steps for a kernel, including the kernel's clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, kernel, |kernel| {

@@ -6,11 +6,11 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Address of the code for triangles, with its clipper. The processor's vectors are below it.
+/// Address of the code for triangles, with its clipper. The processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
-/// Address of the code that selects the views of a primitive among six.
+/// Address of the code that finds which of six views contain a primitive.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Address of the code for edits and the beginning of a pass.
+/// Address of the code that edits structures and places them at the beginning of a pass.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
 /// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
@@ -20,65 +20,67 @@ pub(crate) const PARAMETERS: u32 = 0x1_0000;
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
 /// Address of the parameter block for spheres.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
-/// Address of a kernel's stack frame. The frames of the clipper and of the code for runs of primitives are below it.
+/// Address of a kernel's stack frame. The stack frames of the clipper and of kernels/runs.s are below this address.
 pub(crate) const STACK: u32 = 0x1_1400;
-/// Address of the right eye's parameter block, for kernels that serve both eyes.
+/// Address of the right eye's parameter block, for kernels that transform both eyes.
 pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
-/// Address of the display list, after the first megabyte, which belongs to the program.
+/// Address of the display list. It follows the first megabyte, which belongs to the program.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Address of a message from the host, with matrices or edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
-/// Address of the model matrices, by structure.
+/// Address of the model matrices, sorted by structure.
 pub(crate) const MODELS: u32 = 0x1_6000;
-/// Address of the bounds of bins, like [`BINS`], for further views that share a context. Each view has both contexts.
+/// Address of further bin bounds in the format of [`BINS`], for the second and later views that share a context. Each
+/// view has bounds in both contexts.
 const MORE_BINS: u32 = 0x7_D000;
 /// Address at the end of the model matrices.
 pub(crate) const MODELS_END: u32 = BLENDED;
-/// Address of the matrix elements of two views and of the view between them.
+/// Address of three groups of matrix elements: the first view, the second view, and the interpolated view.
 pub(crate) const BLENDED: u32 = 0x7_5000;
 pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
-/// Address of the code that finds the primitives in windows.
+/// Address of the code that finds the primitives in windows (rectangles of the screen).
 pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
-/// Address of the windows to search, preceded by the rectangle around them.
+/// Address of the windows to search. The rectangle around all windows comes first.
 pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
-/// Address of the upper left pixels of the windows.
+/// Address of the coordinates of each window's upper left pixel.
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
 /// Address of the lists of primitives in windows, in the format of [`bins`].
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
-/// Address of the records of kept passes, one for each part of memory.
+/// Address of the records of stored passes, one record for each part of memory.
 pub(crate) const KEPT: u32 = 0x7_B400;
-/// Bytes of the record of a kept pass.
+/// Bytes of the record of a stored pass.
 pub(crate) const KEPT_BYTES: u32 = 32;
-/// Largest number of kept passes.
+/// Largest number of passes that are stored at a time.
 pub(crate) const MOST_KEPT: u32 = 16;
-/// Address of the code that assembles orders.
+/// Address of the code that assembles a master's order, its message to the slaves.
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
-/// Address of the head of an order.
+/// Address of the first words of an order, before its views.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
 /// Largest number of windows in one search.
 pub(crate) const MOST_WINDOWS: u32 = 64;
-/// Bytes of a window.
+/// Bytes of a window's description.
 pub(crate) const WINDOW_BYTES: u32 = 32;
-/// Bytes at the end of memory for the entries of an order's windows.
+/// Bytes at the end of memory for the primitives found in the windows of one search.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
-/// Largest number of views whose bins share a context: the faces of a cube.
+/// Largest number of views whose bins share a context: the six faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;
-/// Address of the bounds of the bins of both contexts, which the tokens read.
+/// Address of the start and end addresses of all bins, in both contexts. The code that hands over a region reads them.
 const BINS: u32 = 0x1_2F00;
-/// Bytes of the bounds of one context: the number of its spheres, and two addresses for each region.
+/// Bytes of the bin bounds of one context: the address of its first sphere command, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
-/// Address of the parameter block for a token's code.
+/// Address of the parameter block for the code that hands over a region.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
 pub(crate) const ENVELOPES: u32 = 0x1_3900;
 pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;
-/// Address of the list of messages of a region.
+/// Address of the list of a region's messages.
 pub(crate) const LISTS: u32 = 0x8_0000;
 pub(crate) const PIECES: u32 = 0x9_0000;
 pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;
 
-/// Returns the address of the bounds of a context's bins. `view` is 0 for the first view that shares the context.
+/// Returns the address of the start and end addresses of a context's bins. `view` is 0 for the first view that shares
+/// the context.
 pub(crate) fn bins(context: u8, view: u8) -> u32 {
     let context = u32::from(context % 2);
     match u32::from(view).checked_sub(1) {

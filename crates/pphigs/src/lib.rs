@@ -12,16 +12,17 @@
 //! - [`Share`]: every n-th primitive. The GPs get primitives round-robin (TR94).
 //! - [`FrameView`]: the host's message for a frame: viewing transforms and edits, as words.
 //! - [`send_as_tracked`]: the host program of a pipeline that takes the newest view when it needs one.
-//! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. It computes command
-//!   words on demand, from the same transformed vertices.
-//! - [`TransformCost`]: counts of the work of a TRANSFORM, and its time by the timing table.
-//! - [`TransformWork`]: TRANSFORM as work of a board, timed by the table or run as i860 code that makes the same words.
+//! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. The words of their
+//!   commands are computed on demand, from the same transformed vertices.
+//! - [`TransformCost`]: counted work of a TRANSFORM, and its time by the timing table.
+//! - [`TransformWork`]: TRANSFORM as work of a board. Its time comes from the table or from i860 code, which makes the
+//!   same words.
 //! - [`CubeTransform`]: TRANSFORM of six views around an eye, as i860 code.
 //! - [`BinHandoffWork`]: handover of a region's bin to the ring, as work of a board.
-//! - [`WindowSearchWork`]: search and handover of the primitives in rectangles of the screen without bins, as work of a board.
-//! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands for a strip of a view in
-//!   between, as i860 code.
-//! - [`assemble_order`]: assembly of a master's order, as i860 code.
+//! - [`WindowSearchWork`]: search for the primitives in rectangles of the screen without bins, as work of a board.
+//! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands of a strip
+//!   of lines for a view in between, as i860 code.
+//! - [`assemble_order`]: assembly of an order, the message of a master GP to its slaves, as i860 code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!

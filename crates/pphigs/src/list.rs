@@ -22,30 +22,31 @@ pub struct DisplayList {
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<WorldSphere>,
-    /// Structures, whose triangles and spheres follow one another.
+    /// Structures, in the order of their triangles and of their spheres. No primitive lies between two structures.
     pub structures: Vec<DisplayStructure>,
     /// Unit vector towards the light, in each structure's frame.
     pub towards_light: Vec3,
-    /// Share of the colour that is visible in shadow, 0 to 1.
+    /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Share of the colour that perpendicular light adds, 0 to 1.
+    /// Fraction of the colour that light from a perpendicular direction adds, 0 to 1.
     pub diffuse: f32,
     /// Background colour: red, green, blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight needs a single eye direction for the whole picture.
+    /// True if surfaces have no highlight. A highlight requires one eye direction for the whole picture.
     pub is_matte: bool,
-    /// Cache of computations common to all graphics processors. Code that changes the list must empty the cache.
+    /// Cache of results that all graphics processors share. Code that changes the list must empty this cache.
     pub recent: RecentViews,
 }
 
 impl DisplayList {
-    /// Sorts each structure's vertices in the order in which its triangles use them, for locality in memory.
+    /// Sorts each structure's vertices by their first use in its triangles, so that neighbours in use are neighbours in
+    /// memory.
     ///
-    /// A vertex of several structures is duplicated. An unused vertex is dropped.
+    /// A vertex that several structures use is duplicated. A vertex that no triangle uses is dropped.
     ///
     /// # Panics
     ///
-    /// If a structure or a triangle refers to a missing triangle or vertex.
+    /// If a structure refers to a missing triangle, or a triangle to a missing vertex.
     #[must_use]
     pub fn with_vertices_in_order(mut self) -> Self {
         let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
@@ -73,8 +74,8 @@ impl DisplayList {
 
     /// Replaces the colours by lit colours, for [`Shading::Precomputed`](crate::Shading::Precomputed).
     ///
-    /// A colour gets ambient light, and diffuse light on the side of its normal. Structures are taken at their unedited
-    /// places. Spheres keep their colours.
+    /// Each vertex colour gets ambient light. It also gets diffuse light if its normal points towards the light. Every
+    /// structure is lit at its original position, before any edit moves it. Spheres keep their colours.
     #[must_use]
     pub fn with_precomputed_colours(mut self) -> Self {
         let towards_light = self.towards_light.to_array().map(f64::from);
@@ -91,11 +92,11 @@ impl DisplayList {
         self
     }
 
-    /// Returns a triangle with the values at its corners.
+    /// Returns a triangle with the positions, normals and colours of its corners.
     ///
     /// # Panics
     ///
-    /// If there is no triangle of this number, or it refers to a missing vertex.
+    /// If there is no triangle with index `number`, or if it refers to a missing vertex.
     #[must_use]
     pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
@@ -110,7 +111,7 @@ impl DisplayList {
     ///
     /// # Panics
     ///
-    /// If there is no triangle of this number, or it refers to a missing vertex.
+    /// If there is no triangle with index `number`, or if it refers to a missing vertex.
     #[must_use]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
@@ -119,7 +120,7 @@ impl DisplayList {
 
 /// The primitives of one graphics processor (GP), or a consecutive part of them.
 ///
-/// The GP holds the triangles and the spheres with numbers `first`, `first + step`, `first + 2 step` and so on.
+/// The GP holds the triangles and the spheres with the indices `first`, `first + step`, `first + 2 step` and so on.
 #[derive(Clone, Debug)]
 pub struct Share {
     pub(crate) list: Arc<DisplayList>,
@@ -135,14 +136,14 @@ impl Share {
     /// Bytes of a triangle in a GP's memory: three corners of position, normal and colour, 32 bytes each (assumed).
     pub const TRIANGLE_BYTES: u64 = 4 * TRIANGLE_WORDS as u64;
 
-    /// Bytes of a sphere in a GP's memory: centre, radius, colour, header (assumed).
+    /// Bytes of a sphere in a GP's memory: centre, radius, colour and header (assumed).
     pub const SPHERE_BYTES: u64 = 32;
 
-    /// Returns the share of GP `index` of `of` GPs; primitives are distributed round-robin.
+    /// Returns the share of the GP with index `index` among `of` GPs. Primitives are distributed round-robin.
     ///
     /// # Panics
     ///
-    /// If `of` is zero, which a checked configuration excludes.
+    /// If `of` is zero, which a valid configuration excludes.
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
@@ -157,8 +158,8 @@ impl Share {
         &self.list
     }
 
-    /// Returns the same share of another list. The other list must have the same structures, but may order vertices
-    /// differently.
+    /// Returns the share with the same primitives in another list. The other list must have the same structures, but
+    /// its vertices may be in another order.
     #[must_use]
     pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
         Self { list, ..self.clone() }
@@ -170,7 +171,8 @@ impl Share {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
-    /// Returns the numbers of primitives in the chosen structures. `chosen` is indexed by structure.
+    /// Returns the numbers of the share's primitives in the chosen structures. `chosen` has one element for each
+    /// structure.
     #[must_use]
     pub fn chosen_counts(&self, chosen: &[bool]) -> PrimitiveCounts {
         let mut counts = PrimitiveCounts::default();
@@ -181,7 +183,7 @@ impl Share {
         counts
     }
 
-    /// Divides the share into clumps of at most `size` primitives, triangles first.
+    /// Divides the share into clumps of at most `size` primitives. Triangles come first, then spheres.
     ///
     /// # Panics
     ///
@@ -204,29 +206,33 @@ impl Share {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
     }
 
-    /// Returns the bytes that the primitives take in the GP's memory.
+    /// Returns the bytes that the share's primitives take in the GP's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// Returns the numbers of all triangles that the GP holds, even if this share is only a clump of them.
+    /// Returns the indices, in the display list, of all triangles that the GP holds. Unlike a clump, this includes all
+    /// of them.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
-    /// Returns the numbers of all spheres that the GP holds, even if this share is only a clump of them.
+    /// Returns the indices, in the display list, of all spheres that the GP holds. Unlike a clump, this includes all of
+    /// them.
     pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns the indices of the share's triangles in the range `of`, among all triangles that the GP holds.
+    /// Finds the share's triangles whose index in the display list is in `of`. Returns their indices among all
+    /// triangles that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns the indices of the share's spheres in the range `of`, among all spheres that the GP holds.
+    /// Finds the share's spheres whose index in the display list is in `of`. Returns their indices among all spheres
+    /// that the GP holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -239,7 +245,8 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the numbers of the primitives in `of` that are held at the given indices.
+    /// Returns the indices, in the display list, of the primitives in the range `of`. `positions` is the share's range,
+    /// as indices among the primitives that the GP holds.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
@@ -253,12 +260,12 @@ impl Share {
     }
 }
 
-/// Returns how many of the first `all` primitives GP `index` of `gps` holds.
+/// Returns how many of the first `all` primitives are held by the GP with index `index` among `gps` GPs.
 fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
 
-/// Returns the elements of a range from index `from` to before index `to`, as far as they exist.
+/// Returns the part of a range from its element `from` to before its element `to`, cut at the end of the range.
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }

@@ -1,5 +1,5 @@
-//! Assembly of a master's order, as work of a board: kernels/order.s, by the project's own rules
-//! (kernels/order_rules.md).
+//! Assembly of an order, the message of a master GP to its slaves, as work of a board. The code is kernels/order.s, by
+//! the project's own rules (kernels/order_rules.md).
 
 use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
 use i860::Program;
@@ -8,18 +8,18 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Instruction limit, twice the need of the longest message. Code that exceeds the limit counts as endless.
+/// Instruction limit, twice the need of the longest message. Code that exceeds the limit is taken for an endless loop.
 const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 
-/// Largest number of words of an order's head.
+/// Largest number of words of an order before its views.
 const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 
-/// Assembles an order on a board, and returns the time. The first `head` words of the order are its head, the rest are
-/// views.
+/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order are its head; the
+/// other words are views.
 ///
 /// # Errors
 ///
-/// [`ProcessorFault`] if the code does not end, or the order is longer than a message.
+/// [`ProcessorFault`] if the code does not end, or if the order is longer than a message.
 pub fn assemble_order(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
     let (head, views) = order.split_at(head.min(order.len()));
     if order.len() > MAX_MESSAGE_WORDS as usize || head.len() > HEAD_WORDS {

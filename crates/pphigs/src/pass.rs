@@ -1,4 +1,4 @@
-//! One TRANSFORM of a GP's share for one eye.
+//! The result of one TRANSFORM of a GP's share of the primitives, for one eye.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -13,40 +13,40 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A screen triangle of a bin.
+/// A triangle on the screen, or a piece of one, as an entry of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
-    /// Number of the triangle in the display list.
+    /// Index of the triangle in the display list.
     pub(crate) triangle: u32,
-    /// Index of the clipped piece, 0 for an unclipped triangle; `None` for an invisible triangle.
+    /// Index of the piece that clipping made, 0 for an unclipped triangle. `None` for an invisible triangle.
     pub(crate) piece: Option<u8>,
 }
 
-/// Primitives that touch one region, in the order of the display list.
+/// Primitives that touch one region, in the order of the display list. `spheres` holds indices in the display list.
 #[derive(Debug)]
 pub(crate) struct Bin {
     pub(crate) triangles: Vec<BinEntry>,
     pub(crate) spheres: Vec<u32>,
 }
 
-/// Result of the TRANSFORM for one eye: for each region the screen primitives that touch it.
+/// Result of the TRANSFORM for one eye. It holds the screen primitives that touch each region.
 ///
-/// Simulated time needs only their numbers. The content of the bins is computed from the touched regions when it is
-/// first read.
+/// Simulated time depends only on the counts of primitives. The content of the bins is computed when it is first read.
 #[derive(Debug)]
 pub struct Pass {
     walk: Walk,
     found: Found,
     stats: SetupStats,
-    /// Bins by region, filled at the first use.
+    /// Bins, one for each region, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
-    /// Triangles that touch each region, computed at the first use if every region gets all triangles.
+    /// Triangles that really touch each region, computed at the first use. Needed only if every region's bin gets all
+    /// triangles.
     touching: OnceLock<RegionTriangles>,
     /// Encoder of triangle commands, created at the first use.
     encoder: OnceLock<Option<Encoder>>,
 }
 
-/// Input of the binning: the primitives to go through.
+/// Input of the binning: the share, its placed structures and the picture.
 #[derive(Debug)]
 struct Walk {
     share: Share,
@@ -56,31 +56,32 @@ struct Walk {
     chosen: Option<Box<[bool]>>,
 }
 
-/// A consumer of the binning results, which arrive structure by structure in the order of the display list.
+/// A consumer of the binning results. The results arrive structure by structure, in the order of the display list.
 trait BinningSink {
     /// Takes a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// Takes a triangle or a piece of it, and the regions that it touches.
+    /// Takes a triangle or a piece of a clipped triangle, and the set of regions that it touches.
     ///
-    /// The entry belongs to the bins of these regions, or to all bins under [`RegionBinning::All`].
+    /// The entry belongs to the bins of these regions, or to the bins of all regions under [`RegionBinning::All`].
     fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
-    /// Takes a sphere and the regions that it touches.
+    /// Takes the index of a sphere in the display list and the set of regions that the sphere touches.
     fn sphere(&mut self, regions: RegionMask, number: u32);
 }
 
-/// Numbers of primitives found by the binning.
+/// Counts of the primitives that the binning found.
 #[derive(Debug)]
 struct Found {
-    /// Entries of each region's bin.
+    /// Number of entries in each region's bin.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
-    /// Numbers in the display list of the triangles and spheres in any bin; recorded for chosen structures only.
+    /// Indices, in the display list, of the triangles and spheres in any bin. Recorded only if some structures were
+    /// chosen.
     touching: Option<[Vec<u32>; 2]>,
 }
 
-/// A consumer that counts primitives.
+/// A binning consumer that counts primitives.
 struct PrimitiveCounter {
     /// For each region, the triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
@@ -132,7 +133,7 @@ impl BinningSink for PrimitiveCounter {
     }
 }
 
-/// A consumer that counts primitives and also records the numbers of those in any bin.
+/// A binning consumer that counts primitives. It also records the indices of the primitives that are in any bin.
 struct PrimitiveRecorder {
     counting: PrimitiveCounter,
     touching: [Vec<u32>; 2],
@@ -157,7 +158,7 @@ impl BinningSink for PrimitiveRecorder {
     }
 }
 
-/// A consumer that fills bins.
+/// A binning consumer that fills the bins.
 struct BinFiller {
     bins: Vec<Bin>,
     binning: RegionBinning,
@@ -183,10 +184,11 @@ impl BinningSink for BinFiller {
     }
 }
 
-/// A consumer that collects the triangles that touch each region, while every region's bin gets all triangles.
+/// A binning consumer that collects the triangles that touch each region. It is used when every region's bin gets all
+/// triangles.
 #[derive(Debug)]
 struct RegionTriangles {
-    /// Entries by region, each with its place in the bin.
+    /// Entries of each region, each with its index in the region's bin.
     entries: Vec<Vec<(u32, BinEntry)>>,
     n_triangles: u32,
 }
@@ -206,7 +208,7 @@ impl BinningSink for RegionTriangles {
 }
 
 impl Walk {
-    /// Returns the structures to include.
+    /// Returns the chosen structures, or all structures if none were chosen.
     fn taken(&self) -> impl Iterator<Item = &PlacedStructure> {
         let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
         self.placed.iter().enumerate().filter(move |(structure, _)| is_chosen(*structure)).map(|(_, place)| place)
@@ -270,13 +272,13 @@ impl Walk {
 }
 
 impl Share {
-    /// Runs one TRANSFORM of all primitives in the share for one eye.
+    /// Runs one TRANSFORM of all primitives in the share, for the eye with index `eye` of a view.
     #[must_use]
     pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, None))
     }
 
-    /// Runs one TRANSFORM of the primitives of the chosen structures. `chosen` is indexed by structure.
+    /// Runs one TRANSFORM of the primitives of the chosen structures. `chosen` has one element for each structure.
     #[must_use]
     pub fn transform_chosen(&self, view: &FrameView, eye: usize, picture: Picture, chosen: &[bool]) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, Some(chosen)))
@@ -297,7 +299,7 @@ impl Pass {
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
     }
 
-    /// Computes the content of the bins by a second binning.
+    /// Computes the content of the bins. The binning runs a second time, because the first time only counted.
     fn filled(&self) -> Vec<Bin> {
         let room = |counts: &PrimitiveCounts| Bin {
             triangles: Vec::with_capacity(counts.triangles as usize),
@@ -327,7 +329,7 @@ impl Pass {
         self.found.on_screen
     }
 
-    /// Returns the number of entries in all bins.
+    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.found.counts.iter().map(|counts| u64::from(counts.total())).sum()
@@ -339,20 +341,20 @@ impl Pass {
         self.walk.share.counts()
     }
 
-    /// Returns the triangles and spheres in any bin, in the order of the display list. Returns `None` for a pass over
-    /// all structures.
+    /// Returns the indices of the triangles and of the spheres that are in any bin, in the order of the display list.
+    /// Returns `None` for a pass over all structures.
     #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
         self.found.touching.as_ref()
     }
 
-    /// Returns the counts of dropped, clipped and limited primitives.
+    /// Returns the counts of primitives that were dropped, clipped, or limited to the range of a number format.
     #[must_use]
     pub const fn stats(&self) -> SetupStats {
         self.stats
     }
 
-    /// Returns the picture that the view is drawn for.
+    /// Returns the picture parameters that the TRANSFORM used.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.walk.picture
@@ -364,7 +366,7 @@ impl Pass {
         self.walk.share.list.background
     }
 
-    /// Returns the light in the eye coordinates of the first structure.
+    /// Returns the light source in the eye coordinates of the first structure.
     #[must_use]
     pub fn light(&self) -> Option<&Light> {
         self.walk.placed.first().map(|placed| &placed.light)
@@ -386,14 +388,14 @@ impl Pass {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
-    /// Returns the triangles at some places in a region's bin.
+    /// Returns the triangles at the given range of indices in a region's bin.
     pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Returns the triangles at some places in a region's bin that touch the region.
+    /// Returns those triangles at the given range of indices in a region's bin that touch the region.
     ///
-    /// Under [`RegionBinning::Touched`] these are all triangles at the places.
+    /// Under [`RegionBinning::Touched`] all triangles of a bin touch the region.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
         if self.walk.picture.binning == RegionBinning::Touched {
             return Cow::Borrowed(self.triangles_in(region, places));
@@ -408,7 +410,7 @@ impl Pass {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// Returns which structures to draw, by index in the display list; `None` for all.
+    /// Returns true for each structure to draw, by its index in the display list. Returns `None` if all are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

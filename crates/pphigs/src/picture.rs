@@ -1,18 +1,18 @@
-//! Pictures: parameters of drawing a view.
+//! Parameters of drawing a view, such as its shading and binning modes.
 
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_renderer::Layout;
 
-/// Shading mode: where and when colours are computed.
+/// Shading mode: the processor that computes colours, and the points at which it computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
     /// The GP computes colours at the corners; the renderers interpolate them.
     Gouraud,
-    /// The colours of the display list were lit before the run; the renderers interpolate them. Spheres have no
-    /// corners, so they are lit as under [`Shading::Gouraud`].
+    /// Colours are lit once, before the run; the renderers interpolate them. Spheres have no corners, so they are lit
+    /// as under [`Shading::Gouraud`].
     Precomputed,
-    /// The renderers compute colours at the pixels, once at the end of the frame.
+    /// The renderers compute the colour of each pixel once, at the end of the frame.
     Phong,
 }
 
@@ -21,31 +21,32 @@ pub enum Shading {
 pub enum RegionBinning {
     /// The regions that the primitive touches.
     Touched,
-    /// All regions (Slats prototype, TR94). An invisible triangle costs as much as any other, but draws nothing.
+    /// All regions (Slats prototype, TR94). An invisible triangle costs as much time as a visible one, but draws
+    /// nothing.
     ///
-    /// Spheres, which the prototype did not have, go to the touched regions only. In other regions a quadratic would
-    /// exceed 48 bits.
+    /// Spheres go to the touched regions only; the prototype had no spheres. In other regions the values of a sphere's
+    /// quadratic would exceed 48 bits.
     All,
 }
 
 /// Parameters of drawing a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines of the frame that the picture contains, and its division into regions.
+    /// Lines of the frame that the picture contains, and their division into regions.
     pub viewport: Viewport,
     /// Shading mode: colours computed at corners or at pixels.
     pub shading: Shading,
     /// Binning mode: regions that receive a primitive's commands.
     pub binning: RegionBinning,
-    /// Layout of pixel memory for which commands are encoded.
+    /// Layout of pixel memory; commands are encoded for this layout.
     pub layout: Layout,
-    /// True if command words may be needed to compute pixels.
+    /// True if the run may compute pixels, which requires the words of commands.
     pub pixels: bool,
 }
 
 impl Picture {
-    /// Returns the kernel for the picture's triangles. Returns `None` if TRANSFORM has no i860 code for it and takes
-    /// the table's time.
+    /// Returns the kernel for the picture's triangles. Returns `None` if TRANSFORM has no i860 code for this kind of
+    /// picture; its time then comes from the timing table.
     pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
         let surface = match self.shading {
             Shading::Gouraud => KernelSurface::Gouraud,

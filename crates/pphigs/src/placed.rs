@@ -8,26 +8,26 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// One structure in the coordinates of an eye.
+/// One structure, placed for an eye: its matrices, light source and transformed vertices.
 #[derive(Debug)]
 pub struct PlacedStructure {
-    /// Map from the structure's coordinates to the picture; `None` if a matrix is not finite, so that the structure is
-    /// not drawn.
+    /// Map from the structure's coordinates to the picture. `None` if a matrix is not finite; such a structure is not
+    /// drawn.
     pub transform: Option<Transform>,
-    /// The light in eye coordinates.
+    /// The light source in eye coordinates.
     pub light: Light,
     /// The structure's primitives and its frame of reference.
     pub structure: DisplayStructure,
-    /// Matrices from the structure's frame to the eye, from its own coordinates to its frame, and from the eye to the
-    /// picture.
+    /// Three matrices: from the structure's frame of reference to the eye, from its own coordinates to that frame, and
+    /// from the eye to the picture.
     pub(crate) matrices: [Mat4; 3],
-    /// Range of the list's vertices from the first to the last one that the structure's triangles use.
+    /// Range of the list's vertices from the first to the last vertex that the structure's triangles use.
     pub(crate) named: Range<usize>,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The vertices of a structure, from the first [used](PlacedStructure::named) one on.
+/// The transformed vertices of a structure, for the range [`named`](PlacedStructure::named).
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,
@@ -40,13 +40,13 @@ pub(crate) struct Vertices {
 
 /// Cache of a display list's recent views.
 ///
-/// All graphics processors use the same views, so they share the transformed vertices. The cache saves only the
-/// simulator's time.
+/// All graphics processors draw the same views, so they share the transformed vertices. The cache shortens only the run
+/// time of the simulator, not simulated time.
 #[derive(Debug)]
 pub struct RecentViews {
     views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
     kept: usize,
-    /// By structure, the vertices that it uses, which are the same in all views.
+    /// For each structure, the range of vertices that it uses. The range is the same in all views.
     named: OnceLock<Vec<Range<usize>>>,
 }
 
@@ -63,10 +63,10 @@ impl Clone for RecentViews {
     }
 }
 
-/// Capacity for two eyes of two views: one frame is transformed while a slower processor works at the frame before.
+/// Capacity of the cache: two eyes of two views. A slower processor may still work at the frame before the newest one.
 const RECENT: usize = 4;
 
-/// Cache key of a view: everything that the placement of structures depends on.
+/// Cache key of a view. It contains everything that affects the placement of structures.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ViewKey {
     pub(crate) eye: EyeView,
@@ -75,18 +75,18 @@ pub(crate) struct ViewKey {
 }
 
 impl RecentViews {
-    /// Creates an empty cache for `views` views, at least one.
+    /// Creates an empty cache for `views` views. A value of 0 counts as 1.
     #[must_use]
     pub fn keeping(views: usize) -> Self {
         Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
     }
 
-    /// Returns the vertices that each structure uses, computed at the first call.
+    /// Returns the range of vertices that each structure uses. `find` computes the ranges at the first call.
     pub(crate) fn named(&self, find: impl FnOnce() -> Vec<Range<usize>>) -> &[Range<usize>] {
         self.named.get_or_init(find)
     }
 
-    /// Returns the structures of a view from the cache, or places them by `place`.
+    /// Returns the structures of a view from the cache. If the view is not in the cache, `place` places them.
     pub(crate) fn cached_or_placed(
         &self,
         key: ViewKey,

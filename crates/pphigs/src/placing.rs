@@ -1,5 +1,5 @@
-//! Placement of a display list's structures for one eye. Vertices are transformed once for all triangles that share
-//! them.
+//! Placement of a display list's structures for one eye. Each vertex is transformed once for all triangles that share
+//! the vertex.
 
 use crate::list::DisplayList;
 use crate::picture::Shading;
@@ -14,12 +14,13 @@ use std::sync::{Arc, OnceLock};
 /// The model matrix of a structure without edits.
 const UNMOVED: Mat4 = Mat4::IDENTITY;
 
-/// Places all structures of a display list for an eye of a view (0, or 0 and 1).
+/// Places all structures of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a right
+/// eye.
 ///
 /// # Panics
 ///
-/// If the view has no eye. If the list has got other structures since its first placement, but kept its
-/// [`recent`](DisplayList::recent).
+/// If the view has no eye. Also if the list's structures have changed since its first placement, but its cache
+/// [`recent`](DisplayList::recent) has not been emptied.
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
@@ -29,7 +30,7 @@ pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Vie
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
 }
 
-/// Returns, by structure, the range of vertices from the first to the last one that its triangles use.
+/// Returns, for each structure, the range of vertices from the first to the last one that its triangles use.
 fn named(list: &DisplayList) -> Vec<Range<usize>> {
     let of = |structure: &DisplayStructure| {
         let all = list.triangles[structure.triangles.clone()].iter().flatten();
@@ -39,7 +40,7 @@ fn named(list: &DisplayList) -> Vec<Range<usize>> {
     list.structures.iter().map(of).collect()
 }
 
-/// Places all structures like [`place_all`], with a cache for all callers.
+/// Places all structures like [`place_all`], or returns them from the list's cache.
 pub(crate) fn place_cached(
     list: &DisplayList,
     view: &FrameView,
@@ -58,7 +59,7 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
     view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
 }
 
-/// Places one structure. A structure whose matrices are not finite has no transform and is not drawn.
+/// Places one structure. A structure with a matrix that is not finite gets no transform and is not drawn.
 fn place(
     list: &DisplayList,
     structure: &DisplayStructure,
@@ -86,14 +87,14 @@ fn place(
     }
 }
 
-/// Returns a direction in eye coordinates; the matrix is a rotation and a translation.
+/// Rotates a direction into eye coordinates. The matrix must consist of a rotation and a translation.
 fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
     let [x, y, z, _] = matrix.to_cols_array_2d();
     std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }
 
 impl PlacedStructure {
-    /// Returns the light for the colours of corners, which is [`Light::NONE`] if colours are precomputed.
+    /// Returns the light source for the colours of triangle corners, [`Light::NONE`] if the colours are precomputed.
     #[must_use]
     pub fn light_of_corners(&self, shading: Shading) -> &Light {
         if shading == Shading::Precomputed { &Light::NONE } else { &self.light }

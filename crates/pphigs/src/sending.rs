@@ -1,4 +1,4 @@
-//! SEND of a host that does not wait for the pipeline.
+//! The SEND step of a host that does not wait for the pipeline.
 
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage, Ticket};
 use pxpl5_sim::Time;
@@ -9,13 +9,13 @@ use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 /// A message is sent for each report, as soon as the report has arrived and the previous message has been accepted. If
 /// several reports have arrived meanwhile, the newest is sent.
 ///
-/// The first message goes at `first`; `None` sends no message. `next_report` returns the arrival of the first report
-/// after an instant, or `None` if there are no more reports. `message` makes the words of a message from its number and
-/// the knowledge of the host at an instant.
+/// The first message is sent at `first`; `None` sends no message. `next_report` returns the time at which the first
+/// report after a given time arrives, or `None` if there are no more reports. `message` makes the words of a message
+/// from its number and a time. The words use only reports that the host has received by that time.
 ///
 /// # Errors
 ///
-/// The function itself returns no error; the type is that of a program.
+/// The function itself never returns an error; its return type is that of every program.
 pub async fn send_as_tracked(
     gp: Gp,
     receiver: NodeId,
@@ -41,7 +41,7 @@ pub async fn send_as_tracked(
     Ok(())
 }
 
-/// Spends the time of the link, then sends the message.
+/// Waits for the duration of the transfer over the host's link, then sends the message.
 async fn send(gp: &Gp, receiver: NodeId, timing: HostTiming, words: Vec<Word>) -> Ticket {
     let length = words.len() as u32;
     gp.spend(timing.link_span(length)).await;

@@ -8,11 +8,11 @@ use std::ops::Range;
 pub enum ModelFrame {
     /// The room, in which the viewer moves.
     World,
-    /// The viewer's head; the structure moves with it.
+    /// The viewer's head; the structure moves with the head.
     Head,
 }
 
-/// A run of primitives with a common model matrix.
+/// Consecutive primitives with a common model matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayStructure {
     /// Range of the structure's triangles in the display list.
@@ -21,6 +21,6 @@ pub struct DisplayStructure {
     pub spheres: Range<usize>,
     /// Frame of reference: the room or the viewer's head.
     pub frame: ModelFrame,
-    /// Culling mode of the structure's triangles, which PHIGS+ sets for each structure.
+    /// Culling mode of the structure's triangles. PHIGS+ sets it for each structure.
     pub culling: Culling,
 }

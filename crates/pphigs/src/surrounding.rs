@@ -1,7 +1,8 @@
-//! TRANSFORM of six views around an eye, such as the faces of a cube, as i860 code over the board's memory.
+//! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code over the board's memory.
 //!
-//! Each primitive is transformed only for the views that it may touch. kernels/sort.s finds these views, and
-//! kernels/runs.s passes the primitives to the kernels. The rules are the project's own (kernels/sort_rules.md).
+//! Each primitive is transformed only for the views that it may touch. The code kernels/sort.s finds these views, and
+//! kernels/runs.s passes the primitives to the kernels. The rules of both are the project's own
+//! (kernels/sort_rules.md).
 
 use crate::begin::PassStartWork;
 use crate::code::{Destination, KernelOutput, Marks, OutputSize, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
@@ -17,40 +18,41 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Margin by which the sides of a view are moved outwards when primitives are sorted (rule 4).
+/// Distance by which the sides of a view are moved outwards when the code finds the views of a primitive. It is a
+/// fraction of the projection's scale (rule 4).
 const MARGIN: f32 = 1.0 / 32.0;
 
-/// Work of the TRANSFORM of a share for six views of one place.
+/// Work of the TRANSFORM of a share of primitives for six views from one eye position.
 #[derive(Clone, Copy, Debug)]
 pub struct CubeTransform<'a> {
-    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z, in the axes of the last view's eye. All have the
-    /// same projection.
+    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z. The axes are those of the last view's eye
+    /// coordinates. All views have the same projection.
     pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
     /// Bin context of all views, 0 or 1.
     pub context: u8,
 }
 
-/// Result of the six views in the memory of a board.
+/// Result of the TRANSFORM for six views, in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CubeTransformOutput {
     /// Simulated time of all steps.
     pub span: Span,
-    /// Simulated time of the beginning of the pass, which is included in `span`.
+    /// Simulated time of the preparation before the first primitive, which is included in `span`.
     pub start_span: Span,
     /// Simulated time to find the views of each primitive, which is included in `span`.
     pub sort_span: Span,
-    /// Numbers of primitives transformed for each view, visible or not.
+    /// Number of primitives that were transformed for each view, visible or not.
     pub given: Vec<PrimitiveCounts>,
-    /// Results of each view's kernels.
+    /// Output of the kernels for each view.
     pub views: Vec<KernelOutput>,
 }
 
 impl CubeTransform<'_> {
-    /// Runs the code on a board that holds the display list. Returns `None` for pictures that have no kernel.
+    /// Runs the code on a board that holds the display list. Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// [`ProcessorFault`] if the code does not end, or if its data do not fit.
     pub fn run_code(
         &self,
         timing: &GpTiming,
@@ -93,8 +95,8 @@ impl CubeTransform<'_> {
         pass.run_kernels(processor, kernel, needs, to, Some(marks))
     }
 
-    /// Marks every primitive of the drawn structures with its views. Returns the time, and the number of primitives of
-    /// each view.
+    /// Writes a mark word for every primitive of the drawn structures: bit `n` is set if view `n` may contain the
+    /// primitive. Returns the time, and the number of primitives of each view.
     fn sort(&self, processor: &mut Processor, kernel: Kernel) -> Result<(Span, Vec<PrimitiveCounts>), ProcessorFault> {
         let [.., ahead] = self.passes;
         let [triangles, spheres, _] = marks(ahead);
@@ -122,7 +124,8 @@ impl CubeTransform<'_> {
     }
 }
 
-/// Returns the addresses of the mark words of triangles (after the display list) and spheres, and the end of the marks.
+/// Returns three addresses: the mark words of triangles (after the display list), those of spheres, and the end of the
+/// mark words.
 fn marks(pass: &Pass) -> [u32; 3] {
     let share = pass.share();
     let triangles = share.end_of_list();
@@ -130,10 +133,10 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// Primitives of a structure to sort.
+/// Primitives of one structure whose views are to be found.
 ///
-/// `held` are their indices among those that the GP holds. `first` is the address of the GP's first primitive, `bytes`
-/// the size of one, and `marks` the address of the first mark word.
+/// `held` is their range of indices among the primitives that the GP holds. `first` is the address of the GP's first
+/// primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
 struct ViewSort {
     held: Range<usize>,
     first: u32,
@@ -156,7 +159,7 @@ impl ViewSort {
         processor.call(&PROGRAM, entry, &[data.as_slice(), &numbers].concat(), budget(count))
     }
 
-    /// Returns how many of the primitives each view gets.
+    /// Returns, for each view, the number of primitives that are marked for the view.
     fn counts(&self, processor: &Processor) -> Result<[u32; MOST_VIEWS as usize], ProcessorFault> {
         let words: Vec<Word> = processor.read(self.words(), self.held.len())?;
         Ok(std::array::from_fn(|view| words.iter().map(|word| word >> view & 1).sum()))

@@ -1,4 +1,4 @@
-//! The host's message for a frame: viewing transforms and edits, as words of the ring.
+//! The host's message for a frame: matrices of the eyes and edits of structures, encoded as words for the ring.
 
 use glam::{DMat4, Mat4};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, ViewNumber, Word};
@@ -14,7 +14,7 @@ pub struct EyeView {
     pub projection: Mat4,
 }
 
-/// The new model matrix of a structure.
+/// A new model matrix for one structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelEdit {
     /// Index of the structure in the display list.
@@ -23,14 +23,14 @@ pub struct ModelEdit {
     pub model: Mat4,
 }
 
-/// One view: the transforms of the eyes, and edits.
+/// One view: the matrices of the eyes, and the edits of structures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// Number of the view, in the pipeline's own count.
+    /// Number of the view. Each pipeline numbers its own views.
     pub number: ViewNumber,
     /// Matrices of a single eye, or of the left and the right eye.
     pub eyes: Vec<EyeView>,
-    /// Edits since the previous frame.
+    /// Edits of structures since the previous frame.
     pub edits: Vec<ModelEdit>,
 }
 
@@ -41,18 +41,19 @@ const HEADER_WORDS: usize = 4;
 /// Largest number of edits that fit in one message together with the transforms of two eyes.
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
-/// The error for words that do not encode a view.
+/// The error for a message whose length does not match its header.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a view of {expected} words was expected, {found} were found")]
 pub struct ViewWordsError {
-    /// Number of words according to the header, including the header.
+    /// Number of words according to the header, with the header's own words.
     pub expected: usize,
     /// Number of words found.
     pub found: usize,
 }
 
 impl FrameView {
-    /// Encodes the view: number (two words), count of eyes, count of edits, then the matrices column by column.
+    /// Encodes the view as words: number (two words), count of eyes, count of edits, then the matrices column by
+    /// column.
     #[must_use]
     pub fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
@@ -68,11 +69,11 @@ impl FrameView {
         words
     }
 
-    /// Decodes words made by [`FrameView::to_words`].
+    /// Decodes words that [`FrameView::to_words`] has encoded.
     ///
     /// # Errors
     ///
-    /// [`ViewWordsError`] if the length does not match the header.
+    /// [`ViewWordsError`] if the number of words does not match the header.
     pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
         let n_eyes = header_word(words, 2);
         let n_edits = header_word(words, 3);
@@ -94,7 +95,7 @@ impl FrameView {
     }
 }
 
-/// Returns a word of the header; 0 if it is missing.
+/// Returns the header word at index `place`, or 0 if the word is missing.
 fn header_word(words: &[Word], place: usize) -> usize {
     words.get(place).map_or(0, |word| *word as usize)
 }

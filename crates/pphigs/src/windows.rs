@@ -1,9 +1,10 @@
-//! Search of the primitives in rectangles of the screen without bins (strips of lines, blocks), as work of a board.
+//! Search of the primitives in *windows*, rectangles of the screen without bins, as work of a board. A window is a
+//! strip of lines or a block.
 //!
-//! [`Pass::keep`] stores a TRANSFORM in a part of memory: commands, and the bounding box of each. [`WindowSearchWork`] finds
-//! the primitives in each window of an order, and lists the messages that draw the window. The code is
-//! kernels/windows.s, by the project's own rules (kernels/windows_rules.md). By the timing table each entry of a window
-//! takes `bin_entry_ns`.
+//! [`Pass::keep`] stores the result of a TRANSFORM in a part of memory: commands, and the bounding box of each command.
+//! [`WindowSearchWork`] finds the primitives in each requested window, and lists the messages that draw the window. The
+//! code is kernels/windows.s, by the project's own rules (kernels/windows_rules.md). By the timing table each primitive
+//! found in a window takes `bin_entry_ns`.
 
 use crate::begin::PassStartWork;
 use crate::code::{Next, budget, sphere_kernel};
@@ -28,16 +29,16 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId, Word};
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Bytes of a box.
+/// Size of a bounding box, in bytes.
 const BOX_BYTES: u32 = 16;
-/// Bytes of a line of the data cache.
+/// Size of a line of the data cache, in bytes.
 const LINE: u32 = 32;
 
-/// Number of words before a window's primitives: select and clear.
+/// Number of words of the commands before a window's primitives: context selection and clear.
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// One of several equal parts of the memory after a display list, for one kept pass.
+/// One of several equal parts of the memory after a display list. It holds the result of one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryPart {
     number: u8,
@@ -48,7 +49,8 @@ impl MemoryPart {
     /// The whole memory after the display list.
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
-    /// Returns part `number` of `of` parts. `number` is taken modulo `of`, and `of` is limited to 1 to 16.
+    /// Returns part `number` of `of` parts. `number` is taken modulo `of`; an `of` outside 1 to 16 is set to the
+    /// nearest limit.
     #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
@@ -56,7 +58,7 @@ impl MemoryPart {
         Self { number: (number % of as usize) as u8, of }
     }
 
-    /// Returns the addresses of the part, which consists of whole lines of the data cache.
+    /// Returns the address range of the part, which consists of whole lines of the data cache.
     fn place(self, processor: &Processor, share: &Share) -> Range<u32> {
         let begin = share.end_of_list().next_multiple_of(LINE);
         let bytes = entries(processor).saturating_sub(begin) / u32::from(self.of) / LINE * LINE;
@@ -64,7 +66,7 @@ impl MemoryPart {
         begin..begin + bytes
     }
 
-    /// Returns the start address of the part, if it has at least `needed_bytes` bytes.
+    /// Returns the start address of the part. Returns an error if the part has fewer than `needed_bytes` bytes.
     pub(crate) fn checked(
         self,
         processor: &Processor,
@@ -85,12 +87,12 @@ impl MemoryPart {
     }
 }
 
-/// Returns the address of the entries of windows.
+/// Returns the address of the lists of primitives that a search finds in its windows.
 fn entries(processor: &Processor) -> u32 {
     processor.memory_bytes().saturating_sub(ENTRY_BYTES)
 }
 
-/// Consecutive commands of one kind, and the address of their boxes.
+/// Consecutive commands of one kind: address of the first, their number, and the address of their bounding boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct KeptCommands {
     first: u32,
@@ -98,7 +100,7 @@ struct KeptCommands {
     boxes: u32,
 }
 
-/// Triangles and spheres that a pass has left in a part of memory.
+/// Commands of triangles and of spheres that a pass has left in a part of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kept([KeptCommands; 2]);
 
@@ -108,7 +110,7 @@ impl Kept {
         processor.write(part.note(), words.as_flattened())
     }
 
-    /// Returns the kept primitives of a part of memory, or `None` if there are none.
+    /// Reads which commands a pass has left in a part of memory. Returns `None` if no pass has been stored there.
     fn noted(processor: &Processor, part: MemoryPart) -> Result<Option<Self>, ProcessorFault> {
         let words = processor.read(part.note(), 6)?;
         let mut kinds = words.as_chunks::<3>().0.iter().map(|[first, count, boxes]| KeptCommands {
@@ -122,10 +124,10 @@ impl Kept {
 }
 
 impl Pass {
-    /// Runs the kernels of a pass without bins, including its beginning. Keeps the command and box of every primitive
-    /// in a part of memory.
+    /// Prepares the structures and runs the kernels of a pass without bins. Stores the command and bounding box of
+    /// every primitive in a part of memory.
     ///
-    /// Returns `None` for a picture that has no kernel.
+    /// Returns `None` if no kernel can draw this kind of picture.
     ///
     /// # Errors
     ///
@@ -149,7 +151,7 @@ impl Pass {
         PassStartWork::new(self.share().list(), vec![self.placed()], *self.picture()).without_bins()
     }
 
-    /// Keeps the output of `triangles` in a part of memory, followed by all spheres.
+    /// Stores the output of `triangles` in a part of memory, followed by the commands of all spheres.
     pub(crate) fn keep_commands(
         &self,
         processor: &mut Processor,
@@ -170,7 +172,7 @@ impl Pass {
         Ok(of_triangles + of_spheres)
     }
 
-    /// Returns the addresses of the pass's boxes and commands.
+    /// Returns the addresses of the pass's bounding boxes (`table`) and commands (`command`).
     fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
         let given = self.transformed();
         let triangles = self.most_commands(given);
@@ -182,18 +184,18 @@ impl Pass {
     }
 }
 
-/// Work of searching a kept pass for the primitives in some windows.
+/// Work of searching a stored pass for the primitives in the given windows.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
-    /// Part of memory with the kept pass.
+    /// Part of memory with the stored pass.
     pub part: MemoryPart,
-    /// Picture of the kept pass.
+    /// Frame lines and regions of the picture that the pass was stored for.
     pub viewport: Viewport,
     /// Division of the picture into windows.
     pub grid: RegionGrid,
     /// Windows to search, by their indices in the grid.
     pub windows: &'a [RegionId],
-    /// Numbers of primitives that meet each window.
+    /// Numbers of primitives that touch each window.
     pub counts: &'a [PrimitiveCounts],
 }
 
@@ -207,19 +209,19 @@ impl Work for WindowSearchWork<'_> {
     }
 }
 
-/// Result of a search: the listed messages.
+/// Result of a search: its time, and the number of listed messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
-    /// Simulated time of all steps.
+    /// Simulated time of all steps together.
     pub span: Span,
-    /// Simulated time of the handover, which is included in `span`.
+    /// Simulated time to list the messages, which is included in `span`.
     pub handoff_span: Span,
     /// Number of messages of each window.
     pub messages: Vec<u32>,
 }
 
 impl SearchOutput {
-    /// Reads the messages, window by window.
+    /// Reads the listed messages, in the order of the windows.
     ///
     /// # Errors
     ///
@@ -234,7 +236,7 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Runs the code on a board that holds the kept pass. Returns `None` if no pass is kept.
+    /// Runs the code on a board that holds the stored pass. Returns `None` if no pass is stored.
     ///
     /// # Errors
     ///
@@ -263,7 +265,8 @@ impl WindowSearchWork<'_> {
         Ok(Some(output))
     }
 
-    /// Checks that entries and messages fit. They have the same room as the entries of a region in [`crate::BinHandoffWork`].
+    /// Checks that the found primitives and the messages fit. They use the memory of a region's messages in
+    /// [`crate::BinHandoffWork`].
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =
@@ -279,7 +282,7 @@ impl WindowSearchWork<'_> {
         })
     }
 
-    /// Returns true if a window may contain pixels of several regions of the picture.
+    /// Returns true if a window can contain pixels of several regions of the picture.
     fn lies_across_regions(&self) -> bool {
         let regions = self.viewport.grid();
         !regions.region_width.is_multiple_of(self.grid.region_width)
@@ -290,8 +293,8 @@ impl WindowSearchWork<'_> {
         (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
     }
 
-    /// Searches the boxes of all kept primitives. The list of each window begins after the known lengths of the lists
-    /// before it.
+    /// Searches the bounding boxes of all stored primitives. The length of each window's list is known, so each list
+    /// begins where the one before it ends.
     fn search(
         &self,
         processor: &mut Processor,
@@ -327,12 +330,13 @@ impl WindowSearchWork<'_> {
     }
 }
 
-/// Returns the registers for the frame line of row 0, and for the step between rows minus one.
+/// Returns two registers with their values: the frame line of row 0, and the step between rows minus one, in lines.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Runs the code that computes the limits of windows from a grid over a picture.
+/// Runs the code that computes the limits of the windows. Each window is a cell of `grid`, cut at the edges of the
+/// picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -354,7 +358,7 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Runs the code that hands over the list of a window, after the pieces and messages of earlier windows.
+/// Runs the code that lists the messages of one window, behind the messages of earlier windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,
@@ -376,7 +380,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The program of the search and the handover. Every message keeps room for the copy, like the native messages.
+/// The program that searches windows and lists their messages. Every message has room for the copy command, like the
+/// messages that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

@@ -1,4 +1,4 @@
-//! Tests of the beginning of a pass and of edits as i860 code: the parameter blocks and matrices must equal those of
+//! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal those of
 //! the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
@@ -40,7 +40,7 @@ impl Numbers {
         Mat4::from_rotation_translation(turn, self.vector(20.0))
     }
 
-    /// Returns a matrix that rotates, moves and scales uniformly; every third one mirrors.
+    /// Returns a matrix that rotates, moves and scales uniformly. Every third matrix also mirrors.
     fn model(&mut self, n: usize) -> Mat4 {
         let size = 10.0_f32.powf(self.next());
         let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
@@ -112,7 +112,8 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
     }
 }
 
-/// Tests structures with spheres under any projection. Other structures must leave the block unchanged.
+/// Tests structures with spheres under any projection. For other structures the spheres' parameter block must stay
+/// unchanged.
 #[test]
 fn the_code_fills_the_parameter_block_of_spheres_as_the_native_firmware_does() {
     let mut numbers = Numbers(SplitMix64::new(35));
@@ -156,7 +157,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
     }
 }
 
-/// Structure numbers beyond the table must be ignored, however large.
+/// A structure number beyond the table of matrices must be ignored, however large it is.
 #[test]
 fn edits_of_structures_that_are_not_there_change_nothing() {
     let edits = vec![ModelEdit { structure: u32::MAX, model: Mat4::IDENTITY }];
@@ -166,7 +167,7 @@ fn edits_of_structures_that_are_not_there_change_nothing() {
     assert!(processor.read(MODELS, 1 << 10).expect("in memory").iter().all(|word| *word == 0));
 }
 
-/// Without structures, a pass begins with its bins only.
+/// If there are no structures, the beginning of a pass only resets the bins.
 #[test]
 fn bins_are_reset_to_where_they_begin() {
     const MESSAGE: u32 = 0x1_4000;

@@ -16,7 +16,7 @@ use std::sync::Arc;
 const MEMORY: u64 = 8 << 20;
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
-/// A generator of numbers from 0 to 1 that are the same on every host.
+/// A generator of numbers from 0 to 1. It gives the same numbers on every host.
 struct Numbers(SplitMix64);
 
 impl Numbers {
@@ -90,7 +90,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// Returns the words of a region's primitives that the code left in memory.
+/// Returns the words of a region's primitives that the i860 code has left in memory.
 fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_words: usize) -> Vec<Word> {
     let bin = &output.bins[region];
     let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
@@ -102,7 +102,7 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
     assert_native_words(list(300));
 }
 
-/// Both structures drop back faces. The first structure has different matrices than the second.
+/// Tests two structures with different matrices. Both drop back faces.
 #[test]
 fn code_leaves_out_what_faces_away() {
     let mut list = Arc::unwrap_or_clone(list(300));
@@ -152,8 +152,8 @@ fn without_bins_every_command_is_made_in_order() {
     }
 }
 
-/// All corners are left of the picture, one of them also outside the guard band. No triangle is cut, so none has more
-/// than one command.
+/// All corners are left of the picture, and one of them is also outside the guard band. No triangle is cut, so each
+/// triangle has at most one command.
 #[test]
 fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
     let mut list = Arc::unwrap_or_clone(list(30));
@@ -172,7 +172,7 @@ fn what_lies_beside_the_picture_is_not_cut_without_bins_either() {
     }
 }
 
-/// Triangles that reach behind the eye, in both structures: their pieces must be in the same bins as the native ones.
+/// Triangles of both structures reach behind the eye. Their pieces must be in the same bins as the native pieces.
 #[test]
 fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
     let mut list = Arc::unwrap_or_clone(list(300));
@@ -190,7 +190,8 @@ fn pieces_of_clipped_triangles_are_those_of_the_native_firmware() {
     }
 }
 
-/// The time of a pass by code must not depend on any number of the timing table, including those for spheres.
+/// If the board runs code, the time of a pass must not depend on any number of the timing table, including the numbers
+/// for spheres.
 #[test]
 fn a_pass_by_code_takes_the_same_time_whatever_the_table_says() {
     let mut list = Arc::unwrap_or_clone(list(30));
@@ -229,10 +230,10 @@ fn a_display_list_larger_than_the_memory_is_refused() {
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
 
-/// Returns the bytes of a context's output, by its definition.
+/// Returns the bytes of a context's output, computed from their definition.
 ///
-/// They are a command for every triangle and one more, and an entry of four bytes for each triangle in each bin. No
-/// triangle is clipped.
+/// The output contains a command for every triangle and one more command. Each bin has an entry of four bytes for each
+/// of its triangles. No triangle is clipped.
 fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
     let regions = pass.picture().viewport.grid().regions() as u16;
     let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).triangles).sum();
@@ -298,11 +299,11 @@ fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
     }
 }
 
-/// Both structures, one of them edited, clump by clump: the words of either eye must be the native ones, in the order
-/// of the display list.
+/// Transforms both structures clump by clump; one of them is edited. The words of either eye must be the native words,
+/// in the order of the display list.
 ///
-/// One compiled pass for both eyes takes less time than two passes. The scheduled one does not, since its code does not
-/// stay in the cache.
+/// With compiled code, one pass for both eyes takes less time than two passes. With scheduled code it does not, since
+/// this code does not stay in the cache.
 #[test]
 fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     let share = Share::new(list(90), 0, 1);
@@ -329,7 +330,7 @@ fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     }
 }
 
-/// A structure that the left eye cannot draw must have commands of the right eye only.
+/// If the left eye cannot draw a structure, the structure must have commands of the right eye only.
 #[test]
 fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     let mut view = view();
@@ -347,8 +348,8 @@ fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     }
 }
 
-/// A triangle has only ambient light if its normal points away, full light if it faces the light, and a part in
-/// between.
+/// A triangle has only ambient light if its normal points away from the light, and full light if it points to the
+/// light. Other normals give light in between.
 #[test]
 fn precomputed_colours_are_ambient_and_diffuse_light_on_the_side_of_the_normal() {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.5, ..DisplayList::default() };

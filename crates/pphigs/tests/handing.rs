@@ -14,15 +14,16 @@ use pxpl5_wire::{
 };
 use std::sync::Arc;
 
-/// Commands are after the first megabyte; the envelopes are in the program's part of memory.
+/// Commands lie after the first megabyte of memory. The commands of the envelopes lie in the first megabyte, which
+/// belongs to the program.
 const PROGRAMS_END: Word = 1 << 20;
 
 fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
     Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
 }
 
-/// Returns small triangles and spheres in front of the eye, most of them in the middle, so that some bins fill several
-/// messages.
+/// Returns small triangles and spheres in front of the eye. Most of them are near the middle, so that some bins fill
+/// several messages.
 fn share(triangles: u32, spheres: usize) -> Share {
     let mut numbers = SplitMix64::new(3);
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
@@ -70,7 +71,7 @@ fn envelopes(region: RegionId) -> [RegionEnvelope; 4] {
     [nothing, begin, end, RegionEnvelope { begin: true, ..end }]
 }
 
-/// Compares the messages of a bin that code has filled, and returns their number.
+/// Compares the messages of a bin that code has filled with the native messages. Returns their number.
 fn compare(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -127,7 +128,8 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
     }
 }
 
-/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never has so many, but a larger one may.
+/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never has so many entries, but a larger
+/// board may.
 #[test]
 fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
     let triangles: usize = 44_300;

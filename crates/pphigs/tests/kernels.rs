@@ -18,8 +18,8 @@ fn mixture() -> Vec<Triangle> {
     all
 }
 
-/// Returns triangles with corners near the near and far planes. There rounding decides about clipping, and a depth may
-/// be beyond the far plane.
+/// Returns triangles with corners near the near and far planes. At these planes, rounding decides whether a triangle is
+/// clipped. A depth can even be beyond the far plane.
 fn at_the_planes() -> Vec<Triangle> {
     let from_eye = kernel::view().model_view.inverse();
     let depths = [0.5, 0.500_000_1, 0.500_01, 40.0, 39.999_996, 39.999_9, 40.000_1];
@@ -55,8 +55,8 @@ fn assert_same_output(found: &Output, expected: &Output, kernel: Kernel) {
     assert_eq!(found.commands.len(), expected.commands.len());
 }
 
-/// Returns strips of 1 to 100 triangles, some longer than a batch, small to large; and one near the near and far
-/// planes.
+/// Returns small to large strips of 1 to 100 triangles. Some strips are longer than a batch, and one is near the near
+/// and far planes.
 fn strips_of_all_sizes() -> Vec<Strip> {
     let lengths: Vec<usize> = (1..60).chain([1, 2, 74, 75, 76, 77, 78, 79, 151, 152, 153, 400]).collect();
     [0.12, 0.8, 6.0].into_iter().zip(5..).flat_map(|(size, seed)| strips(&lengths, size, seed)).collect()
@@ -109,7 +109,7 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
     }
 }
 
-/// About half of the triangles are back faces, including pieces of clipped ones.
+/// About half of the triangles are back faces, including some pieces of clipped triangles.
 #[test]
 fn kernels_that_cull_give_the_native_words_and_bins() {
     let input = mixture();
@@ -129,9 +129,10 @@ fn kernels_that_cull_give_the_native_words_and_bins() {
     }
 }
 
-/// Returns triangles all around the eye, from far outside to across several planes, under mirroring and other matrices.
+/// Returns triangles all around the eye, under mirroring and other matrices. Some are far outside the picture, some
+/// cross several planes.
 ///
-/// Some have a corner on a plane of the guard band, as nearly as single precision permits.
+/// Some have a corner on a plane of the guard band, as exactly as single precision permits.
 fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransform, Vec<Triangle>) {
     let mut all = triangles(1000, 1.0, seed);
     let mut numbers = SplitMix64::new(seed);
@@ -218,8 +219,9 @@ fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewpor
     }
 }
 
-/// The kernels of one pass for both eyes have one bin for all regions of an eye. They make commands for triangles that
-/// touch no region, which the native code drops. So the test uses only triangles that touch a region.
+/// In this test each eye has a single bin for all regions. The kernels for both eyes also make commands for triangles
+/// that touch no region; the native code drops such triangles. The test therefore uses only triangles that touch a
+/// region.
 #[test]
 fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
     for viewport in &PICTURES[1..] {
@@ -245,7 +247,7 @@ fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
     }
 }
 
-/// Returns the triangles without a piece outside the picture, for either eye.
+/// Returns the triangles that have no piece outside the picture, for either eye.
 fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input: &[Triangle]) -> Vec<Triangle> {
     let views = two_eyes(left);
     let is_seen = |triangle: &&Triangle| {
@@ -258,8 +260,8 @@ fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input:
     input.iter().filter(is_seen).copied().collect()
 }
 
-/// Returns frames that are no NTSC frames: faces of a cube from one region to 121, the largest number of regions, and
-/// two frames with partial regions.
+/// Returns frames that are not NTSC frames. They are faces of a cube from one region to 121 regions, the largest
+/// number, and two frames with partial regions.
 fn other_frames() -> impl Iterator<Item = Viewport> {
     let sizes = [(128, 128), (256, 256), (512, 512), (1408, 1408), (2048, 1024), (700, 500), (1280, 1000)];
     sizes.into_iter().map(|(width, height)| {
@@ -307,7 +309,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_other_frames() {
     }
 }
 
-/// Fields of other sizes, regions of other sizes, and frames without bins.
+/// Tests fields of other sizes, regions of other sizes, and frames without bins.
 #[test]
 fn pictures_that_no_code_knows_have_no_kernel() {
     let kernel = |grid, lines, binned| {
@@ -322,7 +324,7 @@ fn pictures_that_no_code_knows_have_no_kernel() {
     assert_eq!(kernel(RegionGrid { region_height: 120, ..small }, Lines::Frame, true), None);
 }
 
-/// Corners that are NaN, or larger than clip coordinates may be, must draw nothing.
+/// A triangle must draw nothing if a corner is NaN, or larger than clip coordinates can be.
 #[test]
 fn triangles_that_cannot_be_represented_are_left_out() {
     let mut input = triangles(30, 0.12, 1);
@@ -372,7 +374,7 @@ fn the_dual_kernel_takes_800_clocks_a_phong_triangle_at_most() {
     assert!(profile.clocks() <= 800 * input.len() as u64, "{profile}");
 }
 
-/// Strips share vertices, so there is one vertex per triangle.
+/// The triangles of a strip share vertices, so there is about one vertex for each triangle.
 #[test]
 fn the_dual_kernel_takes_500_clocks_a_phong_triangle_of_a_strip_at_most() {
     let input = strips(&[1000], 0.12, 1);

@@ -28,7 +28,7 @@ impl Numbers {
         [0; 3].map(|_| self.0.bits() as u8)
     }
 
-    /// Returns a matrix that rotates, moves and scales uniformly; every third one mirrors.
+    /// Returns a matrix that rotates, moves and scales uniformly. Every third matrix also mirrors.
     fn model(&mut self, n: usize) -> Mat4 {
         let size = 4.0_f32.powf(self.next());
         let mirror = if n.is_multiple_of(3) { -1.0 } else { 1.0 };
@@ -36,7 +36,7 @@ impl Numbers {
         Mat4::from_rotation_translation(turn, self.vector(2.0)) * Mat4::from_scale(Vec3::new(mirror * size, size, size))
     }
 
-    /// Returns a perspective projection, also off centre, or a parallel one.
+    /// Returns a projection matrix: perspective, also off centre, or parallel.
     fn projection(&mut self, n: usize) -> Mat4 {
         let mut lens = Mat4::perspective_rh(1.0 + 0.4 * self.next(), 4.0 / 3.0, 0.25, 60.0);
         match n % 4 {
@@ -50,8 +50,8 @@ impl Numbers {
         }
     }
 
-    /// Returns a sphere from tiny to larger than the picture, mostly in front of the eye. Some are behind it, around
-    /// it, or across its planes.
+    /// Returns a sphere of random size, from tiny to larger than the picture. Most spheres are in front of the eye;
+    /// some are behind it, around it, or across its near or far plane.
     fn sphere(&mut self) -> WorldSphere {
         let radius = 10.0_f32.powf(1.5 * self.next() - 1.0);
         let along = Vec3::new(0.5 * self.next(), 0.4 * self.next(), -1.0);
@@ -60,7 +60,8 @@ impl Numbers {
     }
 }
 
-/// Returns spheres with NaN or too large numbers, zero sizes, the eye inside, or images that barely touch a border.
+/// Returns difficult spheres: with NaN or too large numbers, of zero size, around the eye, or barely touching the
+/// picture's border.
 fn odd_spheres() -> Vec<WorldSphere> {
     let mut all = Vec::new();
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 2e30, -3e38, 1e30, -1e29, 0.0] {

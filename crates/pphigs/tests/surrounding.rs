@@ -1,5 +1,5 @@
-//! Tests of six views around an eye by code: each view's words and bins must equal those of the native firmware. Few
-//! primitives may go to a view that does not see them.
+//! Tests of the i860 code for six views around an eye. Each view's words and bins must equal those of the native
+//! firmware. Few primitives may be transformed for a view that does not contain them.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use pphigs::{
@@ -27,15 +27,15 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
-    /// Returns a place around the eye, near or far.
+    /// Returns a position near or far from the eye.
     fn place(&mut self) -> Vec3 {
         self.vector(1.0).normalize_or(Vec3::X) * 20.0_f32.powf(0.9 * self.next())
     }
 }
 
-/// Returns triangles and spheres all around the origin, most of them small for their distance, in five structures.
+/// Returns triangles and spheres in five structures, all around the origin. Most of them look small from the origin.
 ///
-/// One structure is fixed to the head, one is not drawn, and one drops back faces.
+/// One structure is fixed to the head, one is not drawn, and one has back faces that are dropped.
 fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayList> {
     let mut list = DisplayList { towards_light: Vec3::Y, ambient: 0.25, diffuse: 0.75, ..DisplayList::default() };
     for number in 0..triangles {
@@ -134,7 +134,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// Returns the words of a region's primitives as a token hands them over.
+/// Returns the words of a region's primitives as the code hands them over.
 fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
     let handing = BinHandoffWork { pass, context, view, region, envelope: RegionEnvelope::default() };
     handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
@@ -176,7 +176,8 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
     }
 }
 
-/// A primitive in an unnecessary view must be within the margin, large, or a back face.
+/// If a primitive is transformed for a view that does not contain it, it must be within the margin, large, or a back
+/// face.
 #[test]
 fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
     let mut numbers = Numbers(SplitMix64::new(52));

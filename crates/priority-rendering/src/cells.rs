@@ -1,4 +1,5 @@
-//! The policy `cells`: square cells of unlimited height, assigned to memories by their distance from the user's cell.
+//! The policy `cells`: the floor is divided into square cells of unlimited height. A cell's distance from the user's
+//! cell determines its display memory.
 
 use crate::config::PriorityTiming;
 use crate::update::Update;
@@ -7,37 +8,40 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// A square of the floor, identified by its column and row along x and z.
+/// A square of the floor, identified by its column (along x) and its row (along z).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
-    /// x coordinate of the cell's lower border, divided by the side of a cell.
+    /// Column: the x coordinate of the cell's lower border, divided by the side of a cell.
     pub x: i64,
-    /// z coordinate of the cell's lower border, divided by the side of a cell.
+    /// Row: the z coordinate of the cell's lower border, divided by the side of a cell.
     pub z: i64,
 }
 
 impl Cell {
-    /// Returns the cell of a position, with cells of side `side_m`. A border belongs to the cell on its positive side.
+    /// Returns the cell that contains a position, for cells of side `side_m`. A position on a border belongs to the
+    /// cell with the larger coordinates.
     #[must_use]
     pub fn of(x: f64, z: f64, side_m: f64) -> Self {
         Self { x: column(x, side_m), z: column(z, side_m) }
     }
 
-    /// Returns the ring of one cell around another: 0 for the same cell, 1 for its eight neighbours.
+    /// Returns the number of the ring around `self` that contains `other`: 0 for the same cell, 1 for its eight
+    /// neighbours.
     #[must_use]
     pub fn ring(self, other: Self) -> u64 {
         self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
     }
 }
 
-/// Returns the coordinate at which a column of cells begins, in metres.
+/// Returns the coordinate at which the column of cells with index `number` begins, in metres.
 pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the column of cells that contains a coordinate: the last column that begins at or before it.
+/// Returns the index of the column of cells that contains a coordinate. It is the last column that begins at or before
+/// the coordinate.
 ///
-/// The comparisons correct rounding errors of the division.
+/// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     let near = (coordinate / side_m).floor() as i64;
     let after = i64::from(border(near.saturating_add(1), side_m) <= coordinate);
@@ -45,31 +49,32 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories, by rings around the home cell.
+/// Assignment of cells to memories by rings: all cells at the same distance from the home cell form a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, around which cells are assigned.
+    /// The home cell, which is the centre of all rings.
     pub home: Cell,
     /// Side of a cell in metres.
     pub side_m: f64,
-    /// Number of rings around the home cell in memory 0.
+    /// Number of rings around the home cell that memory 0 holds.
     pub inner_rings: u64,
-    /// Ratio of the rings of neighbouring memories: memory 1 holds one ring, memory 2 holds `ring_growth` rings, and so
-    /// on.
+    /// Ratio of the numbers of rings of neighbouring memories. Memory 1 holds one ring, memory 2 holds `ring_growth`
+    /// rings, and so on.
     pub ring_growth: u64,
     /// Number of memories.
     pub memories: usize,
 }
 
 impl CellAssignment {
-    /// Returns the memory of a cell.
+    /// Returns the index of the memory that holds a cell.
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
         let ring = self.home.ring(cell);
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the outermost ring of memory k, unless k is the slowest memory, which has no outer limit.
+    /// Returns the number of the outermost ring that memory k holds. The value does not apply to the slowest memory,
+    /// which has no outer limit.
     ///
     /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
@@ -80,16 +85,16 @@ impl CellAssignment {
         (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
     }
 
-    /// Returns the distance of a position to the border behind which memory k begins, in metres.
+    /// Returns the distance, in metres, between a position and the border at which memory k begins.
     ///
-    /// The distance is 0 on the border and outside. Memory 0 begins at the eye.
+    /// The distance is 0 on the border and outside of it. For memory 0, which begins at the eye, it is always 0.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance of a position to the border between memory k and k + 1, in metres, measured from
-    /// inside.
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k to memory k + 1. The
+    /// distance is 0 outside the border.
     ///
     /// Returns `None` for the slowest memory, which has no such border.
     #[must_use]
@@ -97,7 +102,7 @@ impl CellAssignment {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
     }
 
-    /// Returns the horizontal distance of a position to a cell in metres, 0 inside the cell.
+    /// Returns the horizontal distance between a position and a cell in metres. The distance is 0 inside the cell.
     fn to_cell(self, place: DVec3, cell: Cell) -> f64 {
         let along = |place: f64, number: i64| {
             (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
@@ -105,7 +110,8 @@ impl CellAssignment {
         libm::hypot(along(place.x, cell.x), along(place.z, cell.z))
     }
 
-    /// Returns the distance of a position to the border of the block of `rings` rings around the home cell, 0 outside.
+    /// Returns the distance, in metres, from a position to the border of a square block: the home cell and `rings`
+    /// rings around it. The distance is 0 outside the block.
     fn inside_block(&self, place: DVec3, rings: u64) -> f64 {
         let across = |place: f64, home: i64| {
             let low = (home as f64 - rings as f64) * self.side_m;
@@ -116,7 +122,7 @@ impl CellAssignment {
     }
 }
 
-/// State of the policy: the assignment of cells, and the position each memory was drawn from.
+/// State of the policy `cells`: the assignment of cells, and the eye position from which each memory was drawn.
 #[derive(Clone, Debug)]
 pub struct Cells {
     dealing: CellAssignment,
@@ -129,9 +135,10 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world with the given occupied cells.
+    /// Creates the policy for a world. `occupied` are the cells that contain parts of the scene.
     ///
-    /// With `has_cascade`, an update of a memory makes all faster memories due. Warping needs this.
+    /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
+    /// this.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
@@ -159,22 +166,22 @@ impl Cells {
         &self.dealing
     }
 
-    /// Returns the eye position of a memory's last update.
+    /// Returns the eye position from which a memory was last drawn, or `None` if it was never drawn.
     #[must_use]
     pub fn drawn_from(&self, memory: usize) -> Option<DVec3> {
         self.drawn_from.get(memory).copied().flatten()
     }
 
-    /// Returns how far the eye may move away from the position of a memory's last update, in metres, before the memory
-    /// is due.
+    /// Returns a distance in metres: how far the eye may move from the position of a memory's last update before the
+    /// memory is due.
     ///
-    /// Infinite for a memory without occupied cells, if distances are measured to occupied cells.
+    /// If distances are measured to occupied cells, the result is infinite for a memory without occupied cells.
     #[must_use]
     pub fn way(&self, eye: DVec3, memory: usize) -> f64 {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// Returns the relevant distance of each memory in metres.
+    /// Returns, for each memory, the distance in metres from the eye to the nearest content that counts.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
@@ -188,7 +195,7 @@ impl Cells {
         distances
     }
 
-    /// Simulates a frame with the eye at a position, and returns the memories to draw.
+    /// Computes one frame of the policy for an eye position. Returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();
@@ -224,7 +231,7 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Assigns cells around another home cell. Returns a flag for each memory whose cells have changed.
+    /// Assigns cells to memories around another home cell. Returns, for each memory, true if its cells have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

@@ -1,4 +1,4 @@
-//! All parameters of the policies.
+//! Parameters of all policies.
 
 use crate::error::PriorityError;
 use parameters::ParameterTable;
@@ -28,11 +28,11 @@ parameters::parameter_table! {
 }
 
 impl PriorityTiming {
-    /// Checks all parameters against their limits, and the falloff against the side of a cell.
+    /// Checks that all parameters are within their limits, and that the falloff is not longer than the side of a cell.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] names the parameter, the expected and the found value.
+    /// [`PriorityError`] names the parameter, its expected and its found value.
     pub fn check(&self) -> Result<(), PriorityError> {
         ParameterTable::check(self).map_err(|error| PriorityError(format!("priority.{error}")))?;
         if self.falloff_m > self.cell_m {
@@ -42,8 +42,8 @@ impl PriorityTiming {
         Ok(())
     }
 
-    /// Returns the distance from a border within which warping moves vertices, in metres. The default is the side of a
-    /// cell.
+    /// Returns the distance from a border within which warping moves vertices, in metres. If the parameter is 0, this
+    /// is the side of a cell.
     #[must_use]
     pub const fn falloff_length_m(&self) -> f64 {
         if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }

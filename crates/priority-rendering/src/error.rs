@@ -2,10 +2,10 @@
 
 use thiserror::Error;
 
-/// A parameter or scene that the policies cannot use.
+/// The error for a parameter or a scene that the policies cannot use.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct PriorityError(
-    /// Text with the parameter, the expected and the found value.
+    /// Message with the name of the parameter, its expected and its found value.
     pub String,
 );

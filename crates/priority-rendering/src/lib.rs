@@ -1,5 +1,5 @@
-//! Priority rendering: policies that decide when parts of the scene must be redrawn, and warping that joins parts of
-//! different age.
+//! Priority rendering: policies that decide when parts of the scene must be drawn again. Also warping, which makes
+//! parts of different age meet without gaps.
 //!
 //! ```text
 //!  objects --> [ validity period ] --> level --> Objects --+
@@ -11,32 +11,34 @@
 //!
 //! # Behaviour
 //!
-//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than an
-//!   angle. The causes are: the eye has moved (chord or sine), the object appears larger (disc or sphere), the object
-//!   is animated, or the object rotates. A rotation of the head never makes an image wrong. A face that is out of sight
-//!   can wait ([`time_until_visible_s`]).
+//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than a given
+//!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), the
+//!   object is animated, or the object rotates. A rotation of the head never makes an image wrong. A face that is out
+//!   of sight need not be drawn at once ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
-//!   every 2^k frames. An object changes memories only in a frame that draws both, and both are shown together.
-//! - **Cells** ([`Cells`]): the world is cut into square columns. The ring of a cell around the home cell determines
-//!   its memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further memory holds `ring_growth`
-//!   times as many rings as the previous one.
-//! - **Due memories**: a memory is due when the eye has moved farther than the memory's nearest cell permits. The
-//!   nearest cell is that of its block, or the nearest occupied cell (`to_held_cells`). With warping, an update of a
-//!   memory makes all faster ones due (cascade).
-//! - **New home cell**: when the eye has left the home cell and the slowest memory is due, cells are assigned anew.
-//!   Memories with changed cells are then shown together.
+//!   every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
+//!   together.
+//! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The ring of a cell around the home
+//!   cell determines the cell's memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further
+//!   memory holds `ring_growth` times as many rings as the previous one.
+//! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
+//!   permitted distance grows with the distance to the memory's nearest cell. This is any cell that the memory could
+//!   hold, or only a cell with content (`to_held_cells`). With warping, an update of a memory makes all faster memories
+//!   due, too (cascade).
+//! - **New home cell**: when the eye has left the home cell and the slowest memory is due, cells are assigned to
+//!   memories anew. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
-//!   triangles that share it, so parts have bit-identical vertices along a cut. A segment is the part of a mesh in one
-//!   cell.
-//! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of both eye
-//!   positions. The vertex then has the same direction and depth in both memories.
+//!   triangles that share it, so the parts have bit-identical vertices along a cut. A segment is the part of a mesh in
+//!   one cell.
+//! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the two
+//!   eye positions. The vertex then has the same direction and depth in both memories.
 //!
 //! Units are metres, seconds and radians unless a name says degrees. Axes are right-handed with y up. Results are
 //! bit-identical on every host.
 //!
 //! # Not here
 //!
-//! The pipeline that draws contains the faces, their source, and the handling of late updates.
+//! The faces, their source, and the treatment of late updates belong to the pipeline that draws.
 //!
 //! # Sources
 //!

@@ -1,15 +1,16 @@
-//! The policy `objects`: each object is in the slowest memory that keeps its image right.
+//! The policy `objects`: each object is in the slowest display memory that keeps the object's image right.
 
 use crate::config::PriorityTiming;
 use crate::update::Update;
 use crate::validity::level;
 
-/// State of the policy: the memory of each object, and the time until which its image is right.
+/// State of the policy `objects`: the memory of each object, and the time until which the object's image is right.
 #[derive(Clone, Debug)]
 pub struct Objects {
     frame_s: f64,
     memories: usize,
-    /// Memory of each object, and the time at which its image becomes wrong. `None` before it is drawn.
+    /// For each object, the index of its memory and the time at which its image becomes wrong. `None` before its first
+    /// drawing.
     objects: Vec<Option<(usize, f64)>>,
     moved: u64,
     draws: u64,
@@ -23,22 +24,24 @@ impl Objects {
         Self { frame_s: timing.frame_s(), memories, objects: vec![None; objects], moved: 0, draws: 0 }
     }
 
-    /// Returns the memory of an object, or `None` before the first frame.
+    /// Returns the index of the memory that holds an object, or `None` before the first frame.
     #[must_use]
     pub fn memory(&self, object: usize) -> Option<usize> {
         self.objects.get(object).copied().flatten().map(|(memory, _)| memory)
     }
 
-    /// Returns the number of memory changes of objects, and the number of draws of objects, since the start.
+    /// Returns two counts since the start: how often objects have changed their memory, and how often objects were
+    /// drawn.
     #[must_use]
     pub const fn counts(&self) -> [u64; 2] {
         [self.moved, self.draws]
     }
 
-    /// Simulates frame number `frame`, counted from 0. `periods_s` has the validity period of each object from now on.
+    /// Computes the policy for frame number `frame`, counted from 0. `periods_s` holds the validity period of each
+    /// object from now on, in seconds.
     ///
-    /// An object changes between two memories only when both are drawn. A memory is drawn in its own frames, unless the
-    /// images of all its objects are right until its next frame.
+    /// An object changes its memory only in a frame that draws both the old and the new memory. A memory is drawn in
+    /// its own frames. It is skipped if the images of all its objects stay right until its next frame.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

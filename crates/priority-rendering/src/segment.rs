@@ -1,46 +1,47 @@
-//! Segmentation: a mesh is cut at the borders of cells, once, so that only near parts need frequent drawing.
+//! Segmentation: a mesh is cut once at the borders of cells, so that only its near parts must be drawn often.
 
 use crate::cells::{Cell, CellAssignment, border, column};
 use crate::error::PriorityError;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Largest coordinate of a world that can be cut, in metres.
+/// Largest coordinate, in metres, of a world that the function can cut.
 const FARTHEST_M: f64 = 1e6;
 
-/// Largest number of pieces of triangles in one mesh.
+/// Largest number of pieces that the triangles of one mesh may be cut into.
 const MOST_PIECES: f64 = 1e7;
 
-/// A vertex created by a cut on the line between two other vertices, which may come from cuts themselves.
+/// A vertex that a cut has created on the line between two other vertices. These can be results of cuts themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutVertex {
-    /// Indices of the two vertices, in ascending order.
+    /// Indices of the line's two end vertices, in ascending order.
     pub between: [u32; 2],
-    /// Position on the line, from 0 at the first vertex to 1 at the second.
+    /// Position on the line, from 0 at the first end vertex to 1 at the second.
     pub share: f64,
 }
 
-/// A mesh cut at the borders of cells.
+/// A mesh that was cut at the borders of cells.
 ///
-/// A line is cut once for all triangles that share it, and all parts at a cut use the same vertices. The result has no
-/// cracks and no T-junctions.
+/// A line is cut once for all triangles that share it. All parts at a cut use the same vertices, so there are no cracks
+/// and no T-junctions.
 #[derive(Clone, Debug)]
 pub struct Segmentation {
-    /// The vertices of the mesh, followed by the vertices created by cuts.
+    /// The vertices of the mesh, followed by the vertices that cuts have created.
     pub vertices: Vec<DVec3>,
-    /// Origin of each vertex created by a cut, in the same order. Used to interpolate colours and normals.
+    /// Origin of each vertex that a cut has created, in the same order. The origin serves to interpolate colours and
+    /// normals.
     pub cuts: Vec<CutVertex>,
-    /// The triangles in each cell, with the orientation of the original triangles.
+    /// The triangles in each cell. They have the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,
 }
 
 impl Segmentation {
-    /// Cuts triangles at x = i a and z = i a, where a is the side of a cell.
+    /// Cuts triangles at the planes x = i a and z = i a for all integers i, where a is the side of a cell.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the side is not positive and finite, a coordinate exceeds 1e6 m, an index has no vertex, or
-    /// there would be more than ten million pieces.
+    /// [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. Also if an index has
+    /// no vertex, or if there could be more than ten million pieces.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, PriorityError> {
         check(vertices, triangles, side_m)?;
         let mut cutter = Cutter { side_m, vertices: vertices.to_vec(), cuts: Vec::new(), made: BTreeMap::new() };
@@ -57,7 +58,8 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// Returns the memory of an uncut mesh: the fastest memory of all its cells. `None` for an empty mesh.
+    /// Returns the memory that must hold the uncut mesh: the fastest memory of all cells that the mesh touches. Returns
+    /// `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()
@@ -86,14 +88,14 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     Ok(())
 }
 
-/// Returns the number of cells in the bounding rectangle of a triangle.
+/// Returns the number of cells that the bounding rectangle of a triangle can touch.
 fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     let [a, b, c] = corners;
     let size = (a.max(b).max(c) - a.min(b).min(c)) / side_m;
     (size.x.ceil() + 1.0) * (size.z.ceil() + 1.0)
 }
 
-/// The axis perpendicular to the cuts.
+/// The axis perpendicular to a plane of cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Axis {
     X,
@@ -114,7 +116,7 @@ struct Cutter {
     side_m: f64,
     vertices: Vec<DVec3>,
     cuts: Vec<CutVertex>,
-    /// Vertices created so far, by line, axis and border.
+    /// Indices of the vertices that cuts have created so far, by line, axis and border.
     made: BTreeMap<([u32; 2], Axis, i64), u32>,
 }
 
@@ -136,7 +138,7 @@ impl Cutter {
         Cell { x, z }
     }
 
-    /// Cuts a convex polygon at every border that it crosses. The pieces are in ascending order.
+    /// Cuts a convex polygon at every border that it crosses. Returns the pieces in ascending order of coordinates.
     fn slabs(&mut self, polygon: Vec<u32>, axis: Axis) -> Vec<Vec<u32>> {
         let mut pieces = Vec::new();
         let mut rest = polygon;
@@ -152,7 +154,7 @@ impl Cutter {
         pieces
     }
 
-    /// Returns the parts of a polygon below and above a border that it crosses.
+    /// Cuts a polygon at a border that it crosses. Returns the part below the border and the part above it.
     fn cut(&mut self, polygon: &[u32], axis: Axis, number: i64) -> [Vec<u32>; 2] {
         let at = border(number, self.side_m);
         let mut parts = [Vec::new(), Vec::new()];
@@ -175,7 +177,7 @@ impl Cutter {
         parts
     }
 
-    /// Returns the vertex of a line on a border. All polygons get the same vertex.
+    /// Returns the vertex at which a line crosses a border. All polygons with this line get the same vertex.
     fn vertex(&mut self, line: [u32; 2], axis: Axis, number: i64) -> u32 {
         // The order of the ends must not matter, so sort them.
         let between = [line[0].min(line[1]), line[0].max(line[1])];

@@ -1,10 +1,12 @@
-//! Visibility of the cube's faces: the earliest time at which a face can come into sight, and faces per primitive.
+//! Visibility of the cube's faces: the earliest time at which a face can become visible, and the number of faces that a
+//! primitive touches.
 
 use glam::DVec3;
 
-/// Returns the angle between a viewing axis and the nearest direction of a cube's face, in radians.
+/// Returns the smallest angle, in radians, between a viewing axis and the directions to a face of the cube.
 ///
-/// `face` is the axis of the face, a unit vector along x, y or z. The angle is 0 if the viewing axis hits the face.
+/// `face` is the axis of the face, a unit vector along x, y or z. The angle is 0 if the viewing axis intersects the
+/// face.
 #[must_use]
 pub fn angle_to_face(view: DVec3, face: DVec3) -> f64 {
     let view = view.normalize();
@@ -18,7 +20,7 @@ pub fn angle_to_face(view: DVec3, face: DVec3) -> f64 {
     edges.fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the angle between a unit vector and the nearest direction of the arc between two others.
+/// Returns the smallest angle, in radians, between the unit vector `view` and the arc from `from` to `to`.
 fn angle_to_arc(view: DVec3, from: DVec3, to: DVec3) -> f64 {
     let normal = from.cross(to).normalize();
     let across = view.dot(normal);
@@ -36,18 +38,19 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Returns the time in seconds until a face can come into a picture.
+/// Returns the shortest time, in seconds, until a face can become visible in a picture.
 ///
-/// The picture extends `half_diagonal` radians from its middle. The head rotates by at most `fastest_turn` rad/s.
+/// `half_diagonal` is the angle from the picture's middle to its corner, in radians. The head rotates by at most
+/// `fastest_turn` rad/s.
 #[must_use]
 pub fn time_until_visible_s(view: DVec3, face: DVec3, half_diagonal: f64, fastest_turn: f64) -> f64 {
     (angle_to_face(view, face) - half_diagonal).max(0.0) / fastest_turn
 }
 
-/// Returns the mean number of faces that a small circular object touches, averaged over all directions.
+/// Returns the mean number of faces that a small round object touches. The mean is taken over all directions.
 ///
-/// `radius` is its angular radius in radians, at most 35 degrees. The result is the number of draws of a small
-/// primitive per update of the whole cube.
+/// `radius` is the object's angular radius in radians, at most 35 degrees. An update of the whole cube draws a small
+/// primitive this many times.
 #[must_use]
 pub fn mean_faces_touched(radius: f64) -> f64 {
     let edges = 6.0 / std::f64::consts::PI * libm::acos(1.0 / 3.0);

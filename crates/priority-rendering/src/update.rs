@@ -1,24 +1,24 @@
-//! The result of a policy for one frame.
+//! The result of a policy: the memories to draw in one frame.
 
-/// The memories that a frame draws, and the memories that must be shown together.
+/// The memories that a frame draws, and the memories that must become visible together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Update {
-    /// Flag for each memory: true if it is drawn.
+    /// For each memory: true if the frame draws it.
     pub due: Vec<bool>,
-    /// Flag for each memory: true if it exchanged content, so that it must be shown together with the other such
-    /// memories.
+    /// For each memory: true if it exchanged content with another memory. All such memories must become visible
+    /// together.
     pub together: Vec<bool>,
-    /// True if cells were assigned anew around another home cell.
+    /// True if cells were assigned to memories anew, around another home cell.
     pub deals_anew: bool,
 }
 
 impl Update {
-    /// Returns the memories to draw, most urgent first.
+    /// Returns the indices of the memories to draw, most urgent first.
     pub fn memories(&self) -> impl Iterator<Item = usize> {
         self.due.iter().enumerate().filter(|(_, due)| **due).map(|(memory, _)| memory)
     }
 
-    /// Returns the memories that swap together as a bit mask for the display, with bit k for memory k.
+    /// Returns the memories that swap together as a bit mask for the display. Bit k stands for memory k.
     #[must_use]
     pub fn together_bits(&self) -> u8 {
         (0..).zip(&self.together).map(|(memory, together)| u8::from(*together) << memory).sum()

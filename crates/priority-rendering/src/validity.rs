@@ -1,28 +1,28 @@
-//! Validity period of an object: the time for which its image stays right.
+//! Validity period of an object's image: the duration for which the error of the image stays below a threshold.
 
 use serde::{Deserialize, Serialize};
 
-/// Largest accepted angular error of an image, and the rules for computing it.
+/// Threshold for the angular error of an image, and the rules that compute the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threshold {
     /// Largest accepted angular error in radians.
     pub angle: f64,
-    /// Rule for the distance that the eye may move before a point is wrong.
+    /// Rule for how far the eye may move before the direction of a point is wrong.
     pub translation: Translation,
     /// Rule for the apparent size of an object.
     pub size: SizeRule,
-    /// Rule for the distance of an object.
+    /// Rule for measuring the distance to an object.
     pub distance: Distance,
 }
 
-/// Rule for the distance that the eye may move before a point at distance d is off by the angle theta.
+/// Rule for how far the eye may move before the direction of a point at distance d is wrong by the angle theta.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Translation {
-    /// 2 d sin(theta / 2), as in the paper's figure.
+    /// 2 d sin(theta / 2), as drawn in a figure of the paper.
     #[default]
     Chord,
-    /// d sin(theta), the shortest movement that can move a point by theta.
+    /// d sin(theta), the shortest movement of the eye that can change the direction of a point by theta.
     Sine,
 }
 
@@ -30,54 +30,56 @@ pub enum Translation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SizeRule {
-    /// The size of a disc perpendicular to the line of sight.
+    /// The angle of a disc perpendicular to the line of sight.
     #[default]
     Disc,
-    /// The size of the bounding sphere's outline.
+    /// The angle of the bounding sphere's outline.
     Sphere,
 }
 
-/// Rule for the distance of an object.
+/// Rule for measuring the distance to an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Distance {
-    /// The distance of its nearest point.
+    /// The distance of the object's nearest point.
     #[default]
     Nearest,
-    /// The distance of its middle. Inaccurate for long walls.
+    /// The distance of the object's middle. This rule is inaccurate for long walls.
     Centre,
 }
 
-/// An object as seen from an eye: its bounding sphere and its motion.
+/// An object as seen from an eye position: its bounding sphere and its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectView {
-    /// Distance between the eye and the sphere's middle, in metres.
+    /// Distance between the eye and the middle of the bounding sphere, in metres.
     pub distance_m: f64,
-    /// Radius of the sphere in metres.
+    /// Radius of the bounding sphere in metres.
     pub radius_m: f64,
-    /// Speed relative to the eye in m/s.
+    /// Speed of the object relative to the eye, in m/s.
     pub speed: f64,
-    /// Speed of rotation about its own axis in rad/s.
+    /// Speed of the object's rotation about its own axis, in rad/s.
     pub turn: f64,
-    /// Time for which its animation keeps an image right, in seconds. Infinite without animation.
+    /// Duration for which the object's animation leaves an image right, in seconds. Infinite for an object without
+    /// animation.
     pub animation_s: f64,
 }
 
-/// Time for which an image is right, in seconds, separately for each cause of error. Infinite if a cause is absent.
+/// Durations for which an image is right, in seconds, one for each cause of error. A duration is infinite if the cause
+/// is absent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValidityPeriod {
-    /// Limit from the motion of the eye.
+    /// Duration until the motion of the eye makes the image wrong.
     pub translation_s: f64,
-    /// Limit from the growth of the apparent size.
+    /// Duration until the growth of the apparent size makes the image wrong.
     pub size_s: f64,
-    /// Time limit from the animation, as given by the user.
+    /// Duration until the animation makes the image wrong, as given by the user.
     pub animation_s: f64,
-    /// Limit from the rotation of the object.
+    /// Duration until the rotation of the object makes the image wrong.
     pub turn_s: f64,
 }
 
 impl ValidityPeriod {
-    /// Returns the smallest of all limits: the time until the image must be redrawn.
+    /// Returns the shortest of the four durations. After this time the image must be drawn again.
     #[must_use]
     pub const fn least(&self) -> f64 {
         self.translation_s.min(self.size_s).min(self.animation_s).min(self.turn_s)
@@ -85,15 +87,16 @@ impl ValidityPeriod {
 }
 
 impl Threshold {
-    /// Returns a threshold with the default rules: chord, disc and nearest point. They follow the paper as closely as
-    /// possible.
+    /// Returns a threshold of `theta_deg` degrees with the default rules: chord, disc and nearest point. These rules
+    /// are the closest to the paper.
     #[must_use]
     pub fn of_degrees(theta_deg: f64) -> Self {
         let distance = Distance::Nearest;
         Self { angle: theta_deg.to_radians(), translation: Translation::Chord, size: SizeRule::Disc, distance }
     }
 
-    /// Returns how far the eye may move, in metres, before a point at a distance is off by the threshold.
+    /// Returns how far the eye may move, in metres, before the direction of a point is wrong by the threshold.
+    /// `distance_m` is the point's distance.
     #[must_use]
     pub fn way(&self, distance_m: f64) -> f64 {
         match self.translation {
@@ -102,9 +105,10 @@ impl Threshold {
         }
     }
 
-    /// Returns how far the eye may move towards an object, in metres, before its size is off by the threshold.
+    /// Returns how far the eye may move towards an object, in metres, before the object's apparent size is wrong by the
+    /// threshold.
     ///
-    /// With [`SizeRule::Sphere`], the result is 0 inside the bounding sphere.
+    /// With [`SizeRule::Sphere`], the result is 0 if the eye is inside the bounding sphere.
     #[must_use]
     pub fn max_approach(&self, distance_m: f64, radius_m: f64) -> f64 {
         let quarter = std::f64::consts::FRAC_PI_2;
@@ -122,7 +126,8 @@ impl Threshold {
         }
     }
 
-    /// Returns the time in seconds for which the image of an object that rotates at `turn` rad/s is right.
+    /// Returns the duration, in seconds, for which the image of an object stays right while the object rotates at
+    /// `turn` rad/s.
     #[must_use]
     pub fn turn_s(&self, nearest_m: f64, radius_m: f64, turn: f64) -> f64 {
         let sine = nearest_m * libm::sin(self.angle) / (2.0 * radius_m);
@@ -131,7 +136,7 @@ impl Threshold {
 
     /// Returns the validity period of an object's image.
     ///
-    /// A rotation of the head never makes an image wrong. From inside the bounding sphere, an image is wrong
+    /// A rotation of the head never makes an image wrong. If the eye is inside the bounding sphere, the image is wrong
     /// immediately.
     #[must_use]
     pub fn period(&self, object: &ObjectView) -> ValidityPeriod {
@@ -150,13 +155,13 @@ impl Threshold {
     }
 }
 
-/// Returns the time in seconds for a distance, infinite at speed 0.
+/// Returns the duration, in seconds, of a movement over `way_m` metres. The duration is infinite if the speed is 0.
 fn time_of(way_m: f64, speed: f64) -> f64 {
     if speed == 0.0 { f64::INFINITY } else { way_m / speed.abs() }
 }
 
-/// Returns the slowest of `memories` memories that suits an image right for `period_s`. Memory k is drawn every 2^k
-/// frames.
+/// Returns the index of the slowest of `memories` memories that can hold an image with the validity period `period_s`.
+/// Memory k is drawn every 2^k frames.
 #[must_use]
 pub fn level(period_s: f64, frame_s: f64, memories: usize) -> usize {
     let rests = |k: &usize| f64::from(1_u32 << k) * frame_s <= period_s;

@@ -1,30 +1,32 @@
-//! Region warping: vertices near a border to a slower memory are moved so that both sides meet.
+//! Region warping: vertices near the border to a slower memory are moved, so that the images of both memories meet at
+//! the border.
 
 use crate::error::PriorityError;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Decrease of the displacement with the distance from the border.
+/// Falloff: how the displacement of vertices decreases with the distance from the border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Falloff {
-    /// No displacement, so that cuts tear.
+    /// No displacement. The images of the two memories do not meet at the border.
     None,
     /// Linear decrease to 0.
     #[default]
     Linear,
     /// Smooth decrease to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Full displacement up to the length of the falloff, and none beyond.
+    /// Full displacement within the length of the falloff, and none beyond.
     Step,
 }
 
 impl Falloff {
-    /// All variants with their names on the command line.
+    /// All variants with their command-line names.
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
-    /// Returns the fraction of the displacement at a distance from the border, for a falloff of length `length_m`.
+    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the length
+    /// of the falloff.
     #[must_use]
     pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
         let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
@@ -37,7 +39,7 @@ impl Falloff {
     }
 }
 
-/// The displacement between a memory and its slower neighbour.
+/// The displacement of a memory's vertices near the border to the next slower memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -46,11 +48,12 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// Creates the warp of a memory from its own eye position and that of its slower neighbour.
+    /// Creates the warp from two eye positions: one of the memory's own drawing, the other of its slower neighbour's
+    /// drawing.
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the falloff has no length.
+    /// [`PriorityError`] if the length of the falloff is not positive and finite.
     pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));
@@ -58,11 +61,11 @@ impl RegionWarp {
         Ok(Self { falloff, length_m, displacement: drawn_from - slower_from })
     }
 
-    /// Returns the position at which a vertex is drawn. `to_slower_m` is its distance to the border of the slower
-    /// memory.
+    /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
+    /// slower memory, or `None` if there is no slower memory.
     ///
-    /// On the border, the vertex moves by the whole displacement, so its direction and depth are the same from both eye
-    /// positions. `None` means that there is no slower memory.
+    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same as from the
+    /// eye position of the slower memory's drawing.
     #[must_use]
     pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
         to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))

@@ -91,7 +91,7 @@ fn case_21_faces_out_of_sight() {
     near(angle_to_face(DVec3::new(0.3, 0.2, -1.0), DVec3::NEG_Z), 0.0, 0.0);
 }
 
-/// Searches the nearest direction of a face by trying many directions.
+/// Finds the direction of a face that is nearest to a viewing direction, by trying many directions.
 #[test]
 fn the_angle_to_a_face_is_the_least_of_all_its_directions() {
     for view in [DVec3::new(0.3, 0.9, -0.5), DVec3::new(-1.0, 0.1, 0.2), DVec3::new(1.0, 1.0, 1.0)] {
@@ -114,8 +114,8 @@ fn places_of_the_cube() -> impl Iterator<Item = DVec3> {
 
 /// Checks angles that follow from the symmetry of the cube.
 ///
-/// From a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these. From an
-/// edge's middle, the opposite faces are 90 degrees away.
+/// Seen along a corner, an edge's middle or a face's middle, the nearest direction of any face is again one of these.
+/// From an edge's middle, the opposite faces are 90 degrees away.
 #[test]
 fn angles_from_places_that_the_symmetry_of_the_cube_tells() {
     for view in places_of_the_cube() {
@@ -162,7 +162,8 @@ fn cases_23_and_24_cells_and_their_memories() {
     assert_eq!(dealing().memory(far), 3);
 }
 
-/// Memory k begins behind q + 1 + g + ... + g^(k-2) rings. With g = 2 these are 1, 2 and 4 rings.
+/// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside ring 1, 2
+/// and 4.
 #[test]
 fn rings_that_double_begin_one_two_and_four_rings_away() {
     let doubling = CellAssignment { ring_growth: 2, ..dealing() };
@@ -273,7 +274,8 @@ fn the_distance_of_an_object_is_that_of_its_nearest_point_or_of_its_middle() {
     }
 }
 
-/// The period is infinite from argument 1 on, and for objects that do not rotate or have no size.
+/// The period is infinite if the argument of the arcsine is 1 or more, and for objects that do not rotate or have no
+/// size.
 #[test]
 fn what_turns_unseen_is_right_for_ever() {
     let right_angle = Threshold::of_degrees(90.0);

@@ -1,10 +1,10 @@
-//! Policies over many frames: updates of memories, and bounds of the error.
+//! Tests of the policies over many frames: updates of memories, and upper limits of the image error.
 
 use glam::DVec3;
 use priority_rendering::{Cell, Cells, Falloff, Objects, PriorityTiming, RegionWarp, Threshold, level};
 use proptest::prelude::*;
 
-/// The rules of the specification's numbers: equal rings of cells of 5 m, and a threshold of 90/512 degrees.
+/// Parameters of the specification's examples: rings of equal width, cells of 5 m, and a threshold of 90/512 degrees.
 const EQUAL_RINGS: PriorityTiming =
     PriorityTiming { theta_deg: 90.0 / 512.0, ring_growth: 1, cell_m: 5.0, falloff_m: 5.0, ..PriorityTiming::PAPERS };
 const FRAME_M: f64 = 1.0 / 60.0;
@@ -17,7 +17,8 @@ fn at(x: f64, z: f64) -> DVec3 {
     DVec3::new(x, 1.7, z)
 }
 
-/// Returns the updates of each memory and the new assignments of cells along a path, after the first frame.
+/// Returns the number of updates of each memory along a path, without the first frame. Also returns how often cells
+/// were assigned anew.
 fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
     let mut updates = vec![0; 8];
     let mut deals = 0;
@@ -29,7 +30,8 @@ fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64)
     (updates, deals)
 }
 
-/// Returns the rates of the memories over two minutes of straight walking at 1 m/s, for a heading and a lane.
+/// Returns the update rates of the memories over two minutes of straight walking at 1 m/s. The path has a given heading
+/// and lateral position.
 fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
     let timing = PriorityTiming { cell_m: side_m, ..EQUAL_RINGS };
     let mut cells = Cells::new(&timing, square(60), false);
@@ -60,10 +62,10 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
     }
 }
 
-/// Along a row of cells, the distance to the nearest side of the border decides.
+/// Along a row of cells, the distance to the nearest side of the border determines the rates.
 ///
-/// In the middle half of the row, all lanes have equal rates. Near its edge, the second memory is drawn in every frame,
-/// because 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
+/// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
+/// drawn in every frame, because 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
 #[test]
 fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
     let middle = rates(5.0, 0.0, 2.5);
@@ -108,7 +110,8 @@ fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
     assert_eq!(cells.frame(at(1_001.0, 2.0)).due, [false; 4]);
 }
 
-/// With the smallest theta everything is drawn in every frame. With the largest, nothing is redrawn within a cell.
+/// With the smallest theta, every memory is drawn in every frame. With the largest theta, no memory is redrawn within a
+/// cell.
 #[test]
 fn thresholds_at_their_ends() {
     let walk_with = |theta_deg| {
@@ -183,7 +186,8 @@ proptest! {
         }
     }
 
-    /// An object is in one memory in every frame. It changes only when both memories are drawn and shown together.
+    /// An object is in one memory in every frame. It changes its memory only when both memories are drawn and shown
+    /// together.
     #[test]
     fn objects_change_memories_only_together(periods in prop::collection::vec(prop::collection::vec(0.0..0.3_f64, 5), 1..80)) {
         let mut policy = Objects::new(&EQUAL_RINGS, 5);
@@ -202,7 +206,7 @@ proptest! {
     }
 }
 
-/// An object whose image is right for T is redrawn before T has passed.
+/// If an object's image is right for a time T, the object is redrawn before T has passed.
 #[test]
 fn images_are_drawn_again_before_they_are_wrong() {
     for period in [0.01, 0.0334, 0.05, 0.0667, 0.1, 0.1334, 0.3] {

@@ -1,4 +1,5 @@
-//! Meshes cut at cells: nothing is lost or duplicated, and cuts are shared bit by bit.
+//! Tests of meshes that are cut at cells: nothing is lost or duplicated, and both sides of a cut have bit-identical
+//! vertices.
 
 use glam::DVec3;
 use priority_rendering::{Cell, CellAssignment, Segmentation};
@@ -66,7 +67,7 @@ proptest! {
         }
     }
 
-    /// A line gives the same bits, independent of the triangle and of the direction in which it is cut.
+    /// A line gives bit-identical cut vertices for every triangle that shares it, and for both directions.
     #[test]
     fn a_shared_line_is_cut_at_the_same_places_by_both_sides(
         ends in prop::array::uniform2((-12.0..12.0_f64, -3.0..3.0_f64, -12.0..12.0_f64)),
@@ -115,7 +116,7 @@ fn what_lies_in_a_border_belongs_to_its_positive_side() {
     }
 }
 
-/// A corner on the border belongs to both parts. The opposite line is cut.
+/// A corner on the border belongs to both parts. Only the line opposite to the corner is cut.
 #[test]
 fn a_corner_on_a_border_is_not_made_again() {
     let corners = [(5.0, 0.0), (1.0, 3.0), (9.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 1.0));

@@ -4,9 +4,9 @@ use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes all clumps of a field.
+/// Computes TRANSFORM and RENDER of all clumps of a field.
 ///
-/// Returns the time at which the last clump was accepted, and the time at which the processor had handed it over.
+/// Returns two times: when the last clump was accepted, and when the processor had handed it over for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -35,7 +35,7 @@ pub(super) fn render<const N: usize>(
     [chain.accepted, chain.cpu]
 }
 
-/// The part of a message's cost that does not depend on its content.
+/// Costs of messages and commands that do not depend on the number of triangles.
 struct MessageCosts<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
@@ -63,20 +63,22 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that sends a clump to a region.
+    /// Returns the message that sends a region's part of a clump.
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
     }
 }
 
-/// A clump. Each message selects a region, clears it if it is the field's first, and draws triangles.
+/// A clump of triangles, and its message to each region. The message selects the region and draws triangles. In the
+/// field's first clump it also clears the region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// Delay until a message has [room](Commands::room_behind) behind a message of the previous clump.
+    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message behind a message of the previous
+    /// clump.
     behind_last: Times<N>,
-    /// Delay until a message has room behind another message of the same clump.
+    /// Time until a renderer's FIFO has room for a message behind another message of the same clump.
     behind_itself: Times<N>,
 }
 
@@ -90,7 +92,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns a later clump that follows this one.
+    /// Returns the clump of `triangles` triangles that follows this one.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -100,13 +102,13 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// State of the clumps that are being sent.
+/// Times of the clumps that are being sent.
 struct Chain<const N: usize> {
-    /// Time at which the processor has finished its last work.
+    /// Time at which the processor has finished its latest work.
     cpu: Times<N>,
-    /// Time at which the last message of the last clump was accepted.
+    /// Time at which the last message of the latest clump was accepted.
     accepted: Times<N>,
-    /// Time at which every renderer had accepted its first message of the last clump.
+    /// Time at which every renderer has accepted its first message of the latest clump.
     draining: Times<N>,
 }
 
@@ -115,7 +117,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump. A port sends on several channels at a time.
+    /// Sends the messages of one clump. The GP's port sends on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -143,7 +145,7 @@ impl<const N: usize> Chain<N> {
     }
 }
 
-/// Times at which the channels of a port are free: the earliest one, then the others in ascending order.
+/// Times from which the channels of a port are free: the earliest time, then the other times in ascending order.
 struct Channels<const N: usize> {
     soonest: Times<N>,
     others: [Times<N>; MAX_CHANNELS - 1],
@@ -156,7 +158,8 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Returns a used channel, and sorts it into the others by the time at which it is free.
+    /// Records the time from which the earliest channel is free again, and sorts it among the times of the other
+    /// channels.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

@@ -1,8 +1,9 @@
-//! Frame-buffer ports: each receives one region at a time, in order of arrival.
+//! Copies of regions to the frame buffers. A frame-buffer port receives one region at a time, in order of arrival.
 
 use super::renderer::{Array, Times};
 
-/// A loop over all lanes that the compiler turns into vector instructions.
+/// Computes a value for each lane, one lane for each configuration. The compiler turns the loop into vector
+/// instructions.
 macro_rules! lanes {
     ($i:ident => $lane:expr) => {{
         let mut all = [Default::default(); N];
@@ -13,12 +14,12 @@ macro_rules! lanes {
     }};
 }
 
-/// Largest number of renderers that are modelled. There are 20 field regions, so further renderers would be idle.
+/// Largest number of renderers in the model. A field has 20 regions, so further renderers would have no work.
 pub(super) const MAX_RENDERERS: usize = 20;
 
-/// Copies that a renderer has to make, two bits each, with the first copy in the lowest bits.
+/// Copies that a renderer has to make, with two bits for each copy. The first copy is in the lowest bits.
 ///
-/// [`Queue::ONE`] marks a copy, and `Queue::RIGHT` selects the right frame buffer.
+/// [`Queue::ONE`] is set for each copy. `Queue::RIGHT` is set for a copy to the right frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Queue(u64);
 
@@ -31,15 +32,17 @@ impl Queue {
         (u64::BITS - self.0.leading_zeros()).div_ceil(Self::BITS)
     }
 
-    /// Adds a copy at the end.
+    /// Appends a copy to the right or left frame buffer.
     pub(super) const fn push(&mut self, to_right: bool) {
         let board = if to_right { Self::RIGHT } else { 0 };
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// Returns the same copies, alternating between left and right as long as both remain.
+    /// Returns the same copies in an order that alternates between left and right, as long as copies of both sides
+    /// remain.
     ///
-    /// The first copy is a right one if `begins_right` is true and there is one. Otherwise its side is unchanged.
+    /// The first copy is a right one if `begins_right` is true and a right copy exists. Otherwise the first copy stays
+    /// on its side.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -68,7 +71,8 @@ pub struct CopyTimes {
     pub end_ns: f64,
 }
 
-/// The two ports of several configurations while copies are made.
+/// The two frame-buffer ports of several configurations: times from which they are free, and times of the copies so
+/// far.
 struct Ports<const N: usize> {
     free: [Times<N>; 2],
     begins: Times<N>,
@@ -77,8 +81,9 @@ struct Ports<const N: usize> {
 
 /// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
 ///
-/// The renderer that is ready first goes first, and the lowest number wins a tie. The free time of a renderer becomes
-/// the end of its last copy. While the same renderer is first in all configurations, no lane needs its own choice.
+/// The renderer that is ready first goes first; among equals, the renderer with the lowest index. The renderer's free
+/// time becomes the end of its last copy. As long as the same renderer is first in all configurations, all lanes are
+/// computed by the same steps.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
@@ -98,9 +103,9 @@ pub(super) fn make<const N: usize>(
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
 
-/// Returns the renderer that goes first in all configurations.
+/// Returns the index of the renderer that goes first in all configurations.
 ///
-/// Returns `None` if the configurations differ, or if all copies are done.
+/// Returns `None` if different renderers go first in different configurations, or if all copies are done.
 #[inline(always)]
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MAX_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
@@ -126,7 +131,8 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy to one of the two ports, starting at `ready` or later, and returns its end.
+    /// Makes a copy to one of the two ports. The copy starts at `ready`, or when the port is free. Returns the time of
+    /// its end.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -136,14 +142,14 @@ impl<const N: usize> Ports<N> {
         end
     }
 
-    /// Records a copy. A later copy may begin earlier if it uses the other port.
+    /// Records the times of a copy. A copy to the other port can begin before a copy that was recorded earlier.
     #[inline(always)]
     fn note(&mut self, begin: Times<N>, end: Times<N>) {
         self.begins = self.begins.sooner(begin);
         self.ends = self.ends.later(end);
     }
 
-    /// Makes the remaining copies in an order that may differ between configurations.
+    /// Makes the remaining copies. The order of renderers can differ between configurations.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
@@ -174,7 +180,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Makes a copy to the right port where the mask is set, otherwise to the left port. Returns its end.
+    /// Makes one copy in each lane: to the right port where the mask is set, otherwise to the left port. Returns the
+    /// time of its end.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;
@@ -186,7 +193,7 @@ impl<const N: usize> Ports<N> {
     }
 }
 
-/// A condition per lane: all bits set if it holds, otherwise 0.
+/// A condition for each lane: all bits are set if it is true, otherwise none.
 type Mask<const N: usize> = [u64; N];
 
 #[inline(always)]

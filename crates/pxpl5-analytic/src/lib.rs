@@ -1,25 +1,26 @@
-//! The analytic level: closed forms of Slats and Rendering Control, as recurrences over clumps, regions and pictures.
+//! The analytic level of the model. It computes the times of Slats and of Rendering Control by formulas, without
+//! simulation. Such a *closed form* is a recurrence over clumps, regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
-//! sweep over many thousand configurations takes seconds. They use these rules of the boards:
+//! The closed forms have no events, programs or pixels. They take a few hundred additions and maxima for each
+//! configuration, so a sweep over many thousand configurations takes seconds. They follow these rules of the boards:
 //!
-//! - The messages of a clump leave in order. The input FIFO of a renderer can delay a message.
-//! - A renderer executes commands in order. The copy of a region blocks it.
+//! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
+//! - A renderer executes commands in order. While it copies a region, it executes no other command.
 //! - A frame-buffer port receives one region at a time, in order of arrival.
 //!
-//! Slats on several GPs processes each message in the order in which the ring grants channels (`senders`). Other
-//! pipelines, displays other than NTSC, and heads with a tracker are refused.
+//! For Slats on several GPs, the model processes each message in the order in which the ring grants channels
+//! (`senders`). Other pipelines, displays other than NTSC, and heads with a tracker are errors.
 //!
 //! **Not modelled:** channels used by pixels; interrupts of a GP by messages of other boards; words of a clump's last
-//! message besides its primitives; the host's own messages (replaced by a rate); views after the first one (Slats);
-//! memory.
+//! message besides its primitives; the host's own messages (a mean rate replaces them); views after the first one
+//! (Slats); memory.
 //!
-//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and all comparisons are much coarser.
+//! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
 
 mod clumps;
 mod copies;
@@ -47,7 +48,8 @@ pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Checks an experiment and returns its pipeline, if the pipeline is `P`.
+/// Checks an experiment and returns its pipeline. Returns an error if the pipeline is not `P`, or if the head has a
+/// tracker.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {
@@ -58,18 +60,18 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
     found.ok_or_else(|| no_form(experiment.pipeline().name()).into())
 }
 
-/// Smallest and largest number of fields that an estimate simulates.
+/// Smallest and largest number of fields that an estimate computes.
 ///
-/// They suffice for a steady state and for some views of a moving head.
+/// So many fields reach a steady state and show some views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
-/// Estimates the largest number of primitives to which the scene can be decimated so that all pictures are in time.
+/// Estimates how many primitives the scene can have so that all pictures are in time. The scene is decimated to this
+/// number.
 ///
-/// With the returned number, all pictures are in time. The tracker is ignored, and the head follows the scene's own
-/// motion.
+/// The estimate uses no tracker; the head follows the scene's own motion.
 ///
-/// The search decimates the last scene that was too heavy, instead of the whole scene. The result differs slightly from
-/// a direct decimation of the whole scene, so the final number is tested with a direct one.
+/// The search decimates the last scene that was too heavy, instead of the whole scene. The result can differ slightly
+/// from a direct decimation of the whole scene. The final number is therefore tested with a direct decimation.
 fn triangles_in_time(
     experiment: &Experiment,
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
@@ -114,7 +116,7 @@ fn no_form(what: &str) -> ConfigError {
     ConfigError::Board(format!("the analytic level has no closed form of {what}"))
 }
 
-/// Returns retraces and beam of the first display, which must be NTSC.
+/// Returns the video timing of the first display, which must be an NTSC display.
 fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
     let display: Option<&FrameBufferConfig> =
         config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());

@@ -1,4 +1,4 @@
-//! The load that a scene puts on the machine, as numbers.
+//! The work that a scene causes in the machine, as numbers.
 
 use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
 
-/// The load of one eye's picture.
+/// The primitives and bins of one eye's picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Load {
     /// Number of triangles, summed over all GPs.
@@ -27,14 +27,14 @@ pub struct Load {
 }
 
 impl Load {
-    /// Returns a load of one structure whose triangles lie in every region and are never clipped.
+    /// Returns the load of one structure. Its triangles touch every region and are never clipped.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);
         Self { triangles, structures: 1.0, bins: vec![[triangles, 0.0]; regions], ..Self::default() }
     }
 
-    /// Returns the number of entries in all bins.
+    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> f64 {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
@@ -46,9 +46,9 @@ impl Load {
         triangles + spheres
     }
 
-    /// Returns the loads of an experiment's scene, both eyes for each time in `times` (ps).
+    /// Returns the loads of an experiment's scene: two loads, one for each eye, at each time in `times` (in ps).
     ///
-    /// The views follow the head motion of the scene.
+    /// The head moves as the scene defines.
     ///
     /// # Errors
     ///
@@ -56,7 +56,7 @@ impl Load {
     ///
     /// # Panics
     ///
-    /// Never, because the head-mounted display of an experiment is in range.
+    /// Never, because an experiment has a valid head-mounted display.
     pub fn of_views(
         experiment: &Experiment,
         viewport: Viewport,
@@ -93,7 +93,7 @@ impl Load {
     }
 }
 
-/// Returns the numbers of triangles and spheres of a bin.
+/// Returns the number of triangles and the number of spheres in a bin.
 fn bin(counts: PrimitiveCounts) -> [f64; 2] {
     [f64::from(counts.triangles), f64::from(counts.spheres)]
 }

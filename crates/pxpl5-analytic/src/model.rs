@@ -1,4 +1,4 @@
-//! Slats on a machine, reduced to numbers.
+//! Parameters of Slats on a machine, and the times of a field.
 
 use super::copies::{CopyTimes, MAX_RENDERERS, Queue};
 use super::renderer::Cost;
@@ -12,25 +12,26 @@ use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
 
-/// Number of field regions of both eyes.
+/// Number of regions of a field, both eyes together.
 pub(super) const REGIONS: usize = 20;
 
-/// Largest number of channels of a ring.
+/// Largest number of ring channels in the model.
 pub(super) const MAX_CHANNELS: usize = 8;
 
-/// Channels that copies to two frame buffers need.
+/// Number of channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
 
 /// Number of eyes. Each structure is placed once per eye.
 const EYES: f64 = 2.0;
 
-/// Returns the time to begin a pass over structures, of which some have spheres, for both eyes.
+/// Returns the time to begin a pass over structures for both eyes, in nanoseconds. `sphere_views` is the number of
+/// structures with spheres.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
 }
 
-/// The parameters of Slats on a machine, as used by the closed form.
+/// The parameters that determine the times of Slats on a machine.
 #[derive(Clone, Debug)]
 pub struct SlatsModel {
     pub(super) fifo_words: f64,
@@ -38,7 +39,7 @@ pub struct SlatsModel {
     pub(super) overhead_ns: f64,
     pub(super) hop_ns: f64,
     pub(super) gp: GpTiming,
-    /// Time to begin a pass.
+    /// Time to begin a pass over all structures for both eyes, in nanoseconds.
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,
@@ -47,46 +48,46 @@ pub struct SlatsModel {
     pub(super) clear: Cost,
     pub(super) region_ns: f64,
     pub(super) field_ns: f64,
-    /// Time from a retrace to the scan of the first line of the bottom regions.
+    /// Time from a retrace to the scan of the bottom regions' first line, in nanoseconds.
     bottom_ns: f64,
     pub(super) renderers: usize,
     pub(super) gps: usize,
     pub(super) source_channels: usize,
-    /// Largest number of channels that messages to renderers may occupy.
+    /// Largest number of channels that messages to renderers occupy at the same time.
     pub(super) fifo_channels: usize,
     pub(super) split: bool,
 }
 
-/// Times of a field, in nanoseconds after the retrace at which its view was taken.
+/// Times of a field, in nanoseconds after the retrace at which the field's view was sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// Acceptance of the last clump.
+    /// Time at which the last clump was accepted.
     pub rendered_ns: f64,
     /// Copy of the top regions, or of all regions if copies are not split.
     pub top: CopyTimes,
     /// Copy of the bottom regions after the retrace, if copies are split.
     pub bottom: Option<CopyTimes>,
-    /// True if all copies met their deadlines.
+    /// True if all copies finished before their deadlines.
     pub in_time: bool,
 }
 
-/// Mean properties of a triangle for one eye.
+/// Mean values of a triangle, for one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
-    /// Number of bin entries.
+    /// Number of entries in all bins together.
     pub entries: f64,
     /// Fraction of triangles that the clipper cuts, 0 to 1.
     pub clipped: f64,
 }
 
 impl SlatsModel {
-    /// Derives the model from a machine, with the times of the program's i860 code if it names any. Triangles form one
-    /// structure.
+    /// Derives the parameters from the configuration of a machine. If the program runs i860 code, the times of this
+    /// code are used. All triangles form one structure.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if there are too few renderers. Also if messages to renderers leave fewer than two channels for
-    /// split copies: both would wait for each other, which the analytic level does not model.
+    /// [`ConfigError`] if there are too few renderers, or if messages to renderers leave fewer than two channels for
+    /// split copies. Such copies would wait for each other, and the analytic level does not model this wait.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
         // Each renderer holds as many regions as its memory layout permits.
         let contexts = usize::from(program.layout().plan().contexts.max(1));
@@ -143,21 +144,21 @@ impl SlatsModel {
         })
     }
 
-    /// Returns the model adapted to the number of structures in a scene.
+    /// Returns the parameters for a scene, with the scene's number of structures.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
         Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
-    /// Returns the properties that determine the number and order of messages.
+    /// Returns the parameters that determine the number and order of messages.
     pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Returns the pictures due, if all fields have the times `times`.
+    /// Counts the pictures that are due and those that are shown, if all fields have the times `times`.
     ///
-    /// A field begins at each retrace at which the previous field has finished its commands.
+    /// A field begins at the first retrace after the commands of the previous field are finished.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
         let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
         // A field is drawn in one field and scanned in the next, so its scan ends two fields after its view was taken.
@@ -169,7 +170,7 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Returns the copies that each renderer makes, for the regions that `wanted` selects.
+    /// Returns the copies that each renderer makes. `wanted` returns true for the regions to copy.
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MAX_RENDERERS] {
         let mut queues = [Queue::default(); MAX_RENDERERS];
         let per_half = REGIONS / 4;
@@ -185,13 +186,13 @@ impl SlatsModel {
         queues
     }
 
-    /// Returns the times of a field, and compares them with the deadlines.
+    /// Returns the times of a field, and whether its copies meet their deadlines.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// Returns the time of TRANSFORM for a clump of `triangles` triangles and both eyes.
+    /// Returns the TRANSFORM time of a clump of `triangles` triangles, for both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

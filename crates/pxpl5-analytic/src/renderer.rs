@@ -1,9 +1,9 @@
-//! A renderer's input FIFO and pixel array, one message at a time.
+//! A renderer's input FIFO and array of pixel processors, computed one message at a time.
 
 use pxpl5_renderer::{CommandKind, RendererTiming};
 use std::ops::{Add, Mul, Sub};
 
-/// Returns the later of two times. Faster than `f64::max`, because no time is NaN.
+/// Returns the later of two times. Neither time is NaN, so this is faster than `f64::max`.
 #[inline]
 pub(super) fn later(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -15,7 +15,7 @@ pub(super) fn sooner(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Number of words and execution time of a command or message.
+/// Number of words and execution time of a command or of a message.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cost {
     pub(super) words: f64,
@@ -23,16 +23,17 @@ pub(super) struct Cost {
 }
 
 impl Cost {
-    /// Returns the words and the time of one command on a renderer.
+    /// Returns the cost of one command on a renderer.
     pub(super) fn of_command(timing: &RendererTiming, kind: CommandKind) -> Self {
         let ns = timing.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
         Self { words: f64::from(kind.words()), ns }
     }
 }
 
-/// Times of several configurations in nanoseconds, one per lane. Operations treat each lane separately.
+/// Times of several configurations in nanoseconds. Each configuration has a lane, and operations treat each lane
+/// separately.
 ///
-/// The alignment is that of a vector register, because vectors that cross a cache line take twice as long.
+/// The alignment is that of a vector register. A vector that crosses a cache line would take twice as long.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -58,7 +59,7 @@ impl<const N: usize> Times<N> {
         Self::each(|i| later(self.0[i], other.0[i]))
     }
 
-    /// Applies [`sooner`] to each lane. Equal times give `other`.
+    /// Applies [`sooner`] to each lane. In lanes with equal times the result is the time of `other`.
     #[inline(always)]
     pub(super) fn sooner(self, other: Self) -> Self {
         Self::each(|i| sooner(self.0[i], other.0[i]))
@@ -89,14 +90,14 @@ impl<const N: usize> Mul for Times<N> {
     }
 }
 
-/// Depth and speed of the FIFOs in several configurations.
+/// Depth of the renderers' FIFOs in words, and time of a word on the ring, in several configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fifos<const N: usize> {
     pub(super) depth_words: Times<N>,
     pub(super) word_ns: Times<N>,
 }
 
-/// Words and times of a command or message in several configurations.
+/// Number of words and execution time of a command or of a message, in several configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Costs<const N: usize> {
     pub(super) words: Times<N>,
@@ -118,38 +119,41 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message with equal commands in a row, and all its times that do not depend on its arrival.
+/// A message of equal commands after a head of other commands. It holds all times that do not depend on when the
+/// message arrives.
 ///
-/// All other times follow from the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b + c)` exactly,
-/// even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent operations.
+/// All other times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
+/// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
+/// operations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Commands<const N: usize> {
-    /// Time on the channel of the words before the commands, such as selection and clearing.
+    /// Time that the head takes on the channel. The head consists of commands such as selection and clearing.
     head_wire: Times<N>,
-    /// Execution time of the words before the commands.
+    /// Execution time of the head.
     head: Times<N>,
-    /// Time from the head's last word to the start of the first command, if the array is free.
+    /// Time from the head's last word to the start of the first equal command, if the array is free.
     lead: Times<N>,
     /// Number of commands.
     count: f64,
     /// Execution time of one command.
     each: Times<N>,
-    /// Time of the whole message on the channel.
+    /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first command to the end of the last one, limited by execution and by arriving words.
+    /// Time from the start of the first equal command to the end of the last one. Execution or the arrival of words
+    /// limits it.
     drawing: Times<N>,
-    /// Delay until the last word has room in the FIFO, counted from the start of this message's first command.
+    /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.
     ///
-    /// The last word has room when the command that contains the word one FIFO depth before it has started. `f64::MIN`
-    /// if this command is in the previous message.
+    /// There is room when a certain command has started: the one with the word that is one FIFO depth before the last
+    /// word. The value is `f64::MIN` if that command belongs to the previous message.
     room_after: Times<N>,
-    /// Position, counted from the end of the previous message, of the command that must start before the last word has
-    /// room. Infinite if this command is in the same message.
+    /// Position of the command that must have started before the FIFO has room for the last word. It is counted back
+    /// from the end of the previous message. Infinite if that command belongs to the same message.
     room_before: Times<N>,
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message of `count` commands after a head.
+    /// Creates a message of a head and `count` equal commands.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
@@ -182,10 +186,11 @@ impl<const N: usize> Commands<N> {
         }
     }
 
-    /// Returns the delay until this message's last word has room behind the message `before`.
+    /// Returns the time until the FIFO has room for this message's last word, if this message follows the message
+    /// `before`.
     ///
-    /// The delay counts from the start of the first command of `before`. It is negative infinity if no room of `before`
-    /// is needed.
+    /// The time counts from the start of the first command of `before`. It is negative infinity if this message needs
+    /// no room that `before` occupies.
     #[inline(always)]
     pub(super) fn room_behind(&self, before: &Self) -> Times<N> {
         Times::each(|i| {
@@ -198,24 +203,24 @@ impl<const N: usize> Commands<N> {
 /// State of a renderer between messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
-    /// Time at which everything sent so far was executed, or at which the current copy has ended.
+    /// Time at which all commands so far were executed, or at which the current copy has ended.
     pub(super) free: Times<N>,
-    /// Time at which the renderer's port was free again.
+    /// Time from which the renderer's port is free.
     pub(super) released: Times<N>,
-    /// Start of the last message's first command.
+    /// Start of the last message's first command after its head.
     last_start: Times<N>,
 }
 
 impl<const N: usize> Array<N> {
-    /// Returns an array that has nothing to do.
+    /// Returns an array that has executed all its commands.
     pub(super) const fn idle() -> Self {
         Self { free: Times::all(0.0), released: Times::all(0.0), last_start: Times::all(0.0) }
     }
 
-    /// Receives a message whose first word begins at `first_word`, and returns the time at which its last word has
-    /// entered.
+    /// Receives a message whose first word arrives at `first_word`. Returns the time at which its last word has entered
+    /// the FIFO.
     ///
-    /// `behind` is the [delay](Commands::room_behind) until the previous message leaves room.
+    /// `behind` is the time until the previous message leaves room ([`Commands::room_behind`]).
     #[inline(always)]
     pub(super) fn take(&mut self, first_word: Times<N>, commands: &Commands<N>, behind: Times<N>) -> Times<N> {
         let start = (first_word + commands.head_wire + commands.lead).later(self.free + commands.head);

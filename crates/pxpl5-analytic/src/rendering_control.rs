@@ -1,4 +1,4 @@
-//! Rendering Control, frame after frame.
+//! Closed form of Rendering Control: the times of frame after frame, computed without simulation.
 
 use super::load::Load;
 use super::renderer::Cost;
@@ -15,10 +15,10 @@ use pxpl5_run::{
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
-/// Number of words of a token, and of other messages between master and slaves.
+/// Number of words of a message between master and slaves, such as the token of a region.
 const ORDER_WORDS: f64 = 6.0;
 
-/// The parameters of Rendering Control on a machine, as used by the closed form.
+/// The parameters that determine the times of Rendering Control on a machine.
 #[derive(Clone, Debug)]
 pub struct StereoModel {
     eyes: usize,
@@ -39,37 +39,38 @@ pub struct StereoModel {
     fifo_words: f64,
     store_ns: f64,
     backing_regions: usize,
-    /// Number of finished regions that a renderer stores while their frame buffer is busy.
+    /// Number of finished regions that a renderer can store while their frame buffer is not available.
     regions_stored: usize,
     field_ns: f64,
-    /// Time of each region at a frame-buffer port.
+    /// Time of each region's messages at a frame-buffer port, in nanoseconds.
     copy_ns: Vec<f64>,
 }
 
 /// Times of one frame, in nanoseconds from the start of the machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StereoTimes {
-    /// Start of TRANSFORM for each eye.
+    /// Start of each eye's TRANSFORM.
     pub transform_ns: [f64; 2],
-    /// First word of the first copy and last word of the last copy, for each eye.
+    /// For each eye, the time of the first word of the first copy and of the last word of the last copy.
     pub copy_ns: [(f64, f64); 2],
-    /// The retrace at which the frame is shown.
+    /// Time of the retrace at which the frame is first shown.
     pub shown_ns: f64,
 }
 
 impl StereoTimes {
-    /// Returns the time from the first to the last word of an eye's copy.
+    /// Returns the time from the first to the last word of an eye's copies, in nanoseconds.
     fn copy_length_ns(&self, eye: usize) -> f64 {
         self.copy_ns[eye].1 - self.copy_ns[eye].0
     }
 }
 
-/// Returns the mean of a time in nanoseconds over frames, in milliseconds.
+/// Returns the mean of a quantity over frames, in milliseconds. `ns` returns the quantity of one frame in nanoseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Completion times of each stage for all pictures so far. Pictures before the first one count as complete at time 0.
+/// Times at which all pictures so far completed each stage. A picture before the first one counts as complete at time
+/// 0.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
@@ -77,7 +78,8 @@ struct History {
     copied: Vec<f64>,
     /// Bytes of a slave's bins for the previous picture.
     bin_bytes: f64,
-    /// Time by which the first slave has freed its bins before the last slave.
+    /// Time from the moment at which the first slave has freed its bins to the moment at which the last slave has freed
+    /// its bins.
     first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
@@ -86,17 +88,18 @@ struct History {
 
 #[derive(Debug, Default)]
 struct Renderers {
-    /// Time at which the master may assign a region to each renderer.
+    /// Time from which the master can assign the next region to each renderer.
     idle_ns: Vec<f64>,
-    /// Time at which each renderer's array is free.
+    /// Time from which each renderer's array can execute further commands.
     free_ns: Vec<f64>,
-    /// Times at which the regions of each renderer had been copied.
+    /// For each renderer, the times at which its regions had been copied to the frame buffer.
     sent_ns: Vec<Vec<f64>>,
-    /// Times at which the frame buffers of each renderer's stored regions become available.
+    /// For each renderer, the times at which the frame buffers of its stored regions become available.
     stored_until_ns: Vec<Vec<f64>>,
     /// Number of words sent to each renderer.
     words: Vec<f64>,
-    /// For each renderer's latest regions: words sent before, start of the first command, and cost of all commands.
+    /// Three values for each of a renderer's latest regions: words sent before the region, start of the first command,
+    /// and cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -105,7 +108,7 @@ fn back(times: &[f64], picture: usize, by: usize) -> f64 {
     picture.checked_sub(by).and_then(|i| times.get(i)).copied().unwrap_or(0.0)
 }
 
-/// Returns the time of a region's messages at a frame buffer's port.
+/// Returns how long the messages of a region's pixels occupy a frame buffer's port, in nanoseconds.
 fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -> f64 {
     let [_, _, width, height] = grid.rectangle(region);
     let pixels = width * height;
@@ -113,11 +116,11 @@ fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -
 }
 
 impl StereoModel {
-    /// Derives the model from a machine.
+    /// Derives the parameters from the configuration of a machine.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the machine has no slaves.
+    /// [`ConfigError`] if the machine has no slaves, or if it has no closed form.
     pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, ConfigError> {
         if config.n_gps < 2 {
             let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
@@ -162,7 +165,7 @@ impl StereoModel {
         })
     }
 
-    /// Computes consecutive frames. `loads` has one load per eye and frame.
+    /// Computes the times of consecutive frames. `loads` has one load for each eye of each frame.
     #[must_use]
     pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
         let mut history = History::default();
@@ -175,12 +178,12 @@ impl StereoModel {
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
     }
 
-    /// Returns the time of a short message on the ring.
+    /// Returns the time that a short message spends on the ring, in nanoseconds.
     fn transit_ns(&self) -> f64 {
         self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
     }
 
-    /// Returns the time of a message between two processors, including the software cost of both.
+    /// Returns the time of a message between two processors, with the software time of sender and receiver.
     fn order_ns(&self) -> f64 {
         2.0 * self.message_ns + self.transit_ns()
     }
@@ -231,7 +234,7 @@ impl StereoModel {
         times
     }
 
-    /// Returns the number of bin entries of the slave with the largest share.
+    /// Returns the number of bin entries of the slave that holds the most primitives.
     fn entries(&self, load: &Load) -> f64 {
         let primitives = self.largest_share(load.triangles) + self.largest_share(load.spheres);
         load.entries() * primitives / (load.triangles + load.spheres).max(1.0)
@@ -241,16 +244,18 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns how much earlier the first slave has seen all tokens of a picture than the last slave.
+    /// Returns the time between two slaves: one is the first, the other the last to finish with all tokens of a
+    /// picture.
     ///
-    /// Tokens start at one slave each, in turn, and move on as fast as renderers accept commands. With fewer renderers
-    /// than slaves, one slave has seen all tokens when each token has visited as many slaves as there are renderers.
+    /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
+    /// renderers than slaves, a slave can finish early. The first slave finishes when each token has visited as many
+    /// slaves as there are renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
     }
 
-    /// Returns the time of TRANSFORM of the slave with the largest share.
+    /// Returns the TRANSFORM time of the slave that holds the most primitives, in nanoseconds.
     fn transform_ns(&self, load: &Load) -> f64 {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
@@ -260,15 +265,15 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Returns the number of primitives of the slave that holds the most.
+    /// Returns the number of primitives of the slave that holds the most of them.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }
 
-    /// Computes RENDER and COPY of an eye.
+    /// Computes RENDER and COPY of one eye.
     ///
-    /// Returns the time at which the master knows that the last commands were accepted, and the copy's first and last
-    /// word.
+    /// Returns the time at which the master knows that the last commands were accepted. Also returns the times of the
+    /// copies' first and last word.
     fn render(
         &self,
         all: &mut Renderers,
@@ -317,14 +322,14 @@ impl StereoModel {
         (rendered_ns, copy)
     }
 
-    /// Returns the time of a token's way through all slaves.
+    /// Returns the time that a region's token takes to visit all slaves, in nanoseconds.
     fn walk_ns(&self, bin: &[f64; 2]) -> f64 {
         let senders = (bin[0] + bin[1]).min(self.slaves).max(2.0_f64.min(self.slaves));
         let handed_over_ns = self.gp.token_entry_ns as f64 * (bin[0] + bin[1]);
         self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
-    /// Returns the time at which a region's last word was accepted, and the time at which its commands were executed.
+    /// Returns two times: when a region's last word was accepted, and when all commands of the region were executed.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
         // Commands of the region: clear, draw, shade and copy.
@@ -345,9 +350,10 @@ impl StereoModel {
         (accepted_ns, executed_ns)
     }
 
-    /// Returns the time at which the FIFO had room for the last word sent.
+    /// Returns the time at which the FIFO has room for the last word sent.
     ///
-    /// This is the start of the command that contains the word one FIFO depth before it.
+    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. It releases that
+    /// word when the command with the word starts.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -363,7 +369,7 @@ fn earliest(times: &[f64]) -> usize {
     (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
 }
 
-/// Returns the loads of both eyes, frame after frame. A frame begins every second field.
+/// Returns the loads of both eyes, frame after frame. A new frame begins at every second field.
 ///
 /// # Errors
 ///
@@ -381,7 +387,7 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// Closed form of experiments with Rendering Control.
+/// Closed form of Rendering Control: it computes the summary of an experiment, and two estimates, without simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -394,7 +400,7 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(model.summary(&frames, experiment.length()))
 }
 
-/// Returns the number of fields until the first frame after warm-up is shown.
+/// Returns the number of fields until the first frame after the warm-up is shown.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let first_frames = experiment.clone().fields(2 * (WARM_UP_PICTURES as u64 + 1));
     let (model, frames) = frames_of(&first_frames).ok()?;
@@ -414,7 +420,7 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 }
 
 impl StereoModel {
-    /// Returns the summary of the frames shown before the end, without warm-up.
+    /// Returns the summary of the frames that are shown within the first `fields` fields, except those of the warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         // Frames of the warm-up do not count.
@@ -438,17 +444,19 @@ impl StereoModel {
         }
     }
 
-    /// Returns the time from the start of TRANSFORM to the last word of COPY, for each eye.
+    /// Returns the time from the start of TRANSFORM to the last word of COPY, for each eye, in milliseconds.
     fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Returns the time from the start of TRANSFORM to the retrace that shows the frame, for each eye.
+    /// Returns the time from the start of TRANSFORM to the retrace that first shows the frame, for each eye, in
+    /// milliseconds.
     fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Returns the pictures due. Frames are due at the rate that COPY of all eyes permits.
+    /// Counts the frames that are due, and those that were shown. The time of COPY for all eyes determines how often a
+    /// frame is due.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);

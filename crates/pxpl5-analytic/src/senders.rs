@@ -1,5 +1,5 @@
 //! TRANSFORM and RENDER of Slats on any number of GPs. Messages are processed in the order in which the ring grants
-//! channels.
+//! them channels.
 //!
 //! ```text
 //!   clumps of GP 0 --chain--+
@@ -7,12 +7,13 @@
 //!   ...                     |
 //! ```
 //!
-//! A single GP is limited by its own code, so the mean of a clump suffices ([`super::clumps`]). Several GPs are limited
-//! by shared resources: a renderer's port accepts one message at a time, and a message that waits for room in a full
-//! FIFO occupies its channel. All renderers share [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) channels.
+//! A single GP is limited by its own processor time, so computing an average clump suffices ([`super::clumps`]).
+//! Several GPs are limited by shared resources. A renderer's port accepts one message at a time. A message that waits
+//! for room in a full FIFO occupies its channel. All renderers share
+//! [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) channels.
 //!
-//! The order of grants decides which renderers work at the same time, so the model processes all messages in this
-//! order. It uses the timing rules of ring, FIFO and firmware, but not their code.
+//! The order of grants determines which renderers work at the same time, so the model processes all messages in this
+//! order. It uses the timing rules of ring, FIFO and firmware, but none of the simulator's code for them.
 
 use super::copies::MAX_RENDERERS;
 use super::model::{PerTriangle, REGIONS, SlatsModel};
@@ -29,23 +30,23 @@ use slats::CLUMP;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A clump of one GP.
+/// A clump of one GP: up to [`CLUMP`] primitives, transformed and sent together.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// Time of TRANSFORM for both eyes.
+    /// TRANSFORM time of the clump for both eyes.
     transform_ns: f64,
-    /// Numbers of triangles and spheres for each region, in the order of sending.
+    /// Numbers of triangles and of spheres for each region, in the order in which regions are sent.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps of every GP, and the length of the view that the first GP sends to the others.
+/// The clumps of every GP, and the number of words of the view that the first GP sends to the other GPs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Number of words of a view of two eyes without edits: number, counts and three matrices per eye.
+/// Number of words of a view of two eyes without edits: its number, two counts, and three matrices for each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -68,7 +69,7 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// Creates clumps from an experiment's scene in its first view.
+    /// Creates clumps from an experiment's scene, as seen in its first view.
     ///
     /// # Errors
     ///
@@ -76,7 +77,7 @@ impl Clumps {
     ///
     /// # Panics
     ///
-    /// Never, because the head-mounted display of an experiment is in range.
+    /// Never, because an experiment has a valid head-mounted display.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,
@@ -113,12 +114,12 @@ impl Clumps {
     }
 }
 
-/// Number of field regions of an eye side by side.
+/// Number of field regions of one eye that lie side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to renderers with the state `arrays`.
+/// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
 ///
-/// Returns the time at which the last clump was accepted, and the time at which the first GP knows this and is free.
+/// Returns two times: when the last clump was accepted, and when the first GP knows this and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -135,7 +136,7 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Commands that have left a FIFO. Their departure made room for words one FIFO depth later.
+/// Words of a command that have left a FIFO. Each word makes room for the word that follows one FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -143,7 +144,7 @@ struct Departure {
     at_ns: f64,
 }
 
-/// A renderer: port, input FIFO and array.
+/// A renderer: its port, input FIFO and array of pixel processors.
 #[derive(Clone, Debug, Default)]
 struct Renderer {
     free_ns: f64,
@@ -153,8 +154,8 @@ struct Renderer {
 }
 
 impl Renderer {
-    /// Receives a command whose words arrive without gaps from an instant on. Returns the time at which the last word
-    /// has entered.
+    /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
+    /// the last word has entered the FIFO.
     ///
     /// A word enters when the word one FIFO depth before it has left. The words of a command leave when the command
     /// starts. A command starts when all its words have arrived and the previous command has ended.
@@ -182,30 +183,31 @@ impl Renderer {
     }
 }
 
-/// A message to a renderer: counts of each command, in the order of sending.
+/// A message to a renderer. For each kind of command, in the order of sending, `runs` holds the cost of one command and
+/// the number of commands.
 #[derive(Clone, Copy, Debug)]
 struct Message {
     region: usize,
     runs: [(Cost, f64); 4],
 }
 
-/// A GP that sends its clumps, one chain of messages after the other.
+/// A GP that sends its clumps. The messages of a clump form a chain: they are sent in order, one after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Number of clumps that were sent or are being sent.
+    /// Number of clumps whose sending has begun.
     begun: usize,
-    /// Messages of the chain that have not been granted. Empty after the last clump.
+    /// Messages of the current clump that the ring has not granted yet. Empty after the last clump.
     messages: VecDeque<Message>,
-    /// Time at which the next message reached the head of the queue.
+    /// Time at which the next message became the first of the queue.
     since_ns: f64,
-    /// Time at which each channel of the port is free.
+    /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Acceptance of the chain's last message.
+    /// Time at which the last message of the current clump was accepted.
     accepted_ns: f64,
-    /// Latest acceptance among the first messages to each renderer.
+    /// Time by which every renderer has accepted its first message of the current clump.
     draining_ns: f64,
     served: [bool; MAX_RENDERERS],
 }
@@ -216,13 +218,13 @@ impl Sender<'_> {
     }
 }
 
-/// State that all senders share.
+/// State of the ring and of the renderers, which all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
-    /// Time at which each channel for messages to renderers is free.
+    /// Time from which each channel for messages to renderers is free.
     channels_ns: Vec<f64>,
-    /// True if the first message to a region clears it.
+    /// True if the first message to each region also clears the region.
     clears: bool,
 }
 
@@ -237,10 +239,10 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the senders with their first clumps.
+    /// Returns the senders, each with the messages of its first clump.
     ///
-    /// A single GP clears regions in its first clump. With several GPs, the first one clears all regions by its own
-    /// chain of messages, and then sends the view to the others.
+    /// A single GP clears regions with its first clump. With several GPs, the first GP clears all regions with separate
+    /// messages, and then sends the view to the other GPs.
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
@@ -280,7 +282,7 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions. Returns the acceptance of the last one.
+    /// Sends the messages that clear all regions. Returns the time at which the last one was accepted.
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
@@ -305,7 +307,7 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until one produces messages, or none is left.
+    /// Transforms clumps until one of them produces messages, or until no clump is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
             // The single clump buffer can be reused after all renderers have started to receive its content.
@@ -323,8 +325,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the messages of a clump. Each selects a region, clears it if needed, and holds as many primitives as
-    /// fit.
+    /// Returns the messages of a clump. Each message selects a region and holds as many primitives as fit. If `clears`
+    /// is true, the first message to a region also clears the region.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -348,8 +350,7 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns the time at which a sender's next message can be granted, and the time since which the message has
-    /// waited.
+    /// Returns two times for a sender's next message: when the message can be granted, and since when it has waited.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -357,16 +358,17 @@ impl<'a> Ring<'a> {
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
 
-    /// Returns the sender whose message is granted next.
+    /// Returns the index of the sender whose message is granted next.
     ///
-    /// Of several at one instant, the sender that waits longest goes first, then the one with the lowest number.
+    /// If several messages can be granted at the same time, the message that has waited longest goes first. Among equal
+    /// waits, the sender with the lowest index goes first.
     fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
         let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
         let heads = waiting.map(|(place, sender)| (self.head(sender), place));
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants the next message of a sender. It occupies port and channels until its last word is in the FIFO.
+    /// Grants the next message of a sender. The message occupies port and channels until its last word is in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -392,7 +394,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Receives a message's words from an instant on. Returns the time at which the last word has entered the FIFO.
+    /// Receives a message whose first word arrives at `from_ns`. Returns the time at which the last word has entered
+    /// the FIFO.
     fn take(&mut self, message: &Message, number: usize, from_ns: f64) -> f64 {
         let (depth, word) = (self.model.fifo_words, self.model.word_ns);
         let renderer = &mut self.renderers[number];
@@ -412,7 +415,7 @@ impl<'a> Ring<'a> {
 
     /// Returns the time at which the first GP knows that all clumps have been accepted.
     ///
-    /// Each other GP reports by a message, which costs software time at the first GP.
+    /// Each other GP reports this by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
         let model = self.model;
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };

@@ -1,4 +1,4 @@
-//! Closed form of Slats for one field.
+//! Closed form of Slats: the times of one field, computed without simulation.
 
 use super::clumps;
 use super::copies::{self, CopyTimes, MAX_RENDERERS, Queue};
@@ -13,8 +13,8 @@ use pxpl5_run::{
 };
 
 impl SlatsModel {
-    /// Returns the times of a field in the steady state, in which renderers first copy the bottom regions of the
-    /// previous field.
+    /// Returns the times of a field in the steady state. If copies are split, renderers begin with the copies of the
+    /// previous field's bottom regions.
     #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
         if self.gps > 1 {
@@ -24,7 +24,7 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field in the steady state, with given clumps.
+    /// Returns the times of a field in the steady state, for the given clumps.
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -35,10 +35,11 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times for many machines, in their order, identical to those of [`field`](Self::field).
+    /// Returns the times of a field for many machines, in their order. They are identical to the times of
+    /// [`field`](Self::field).
     ///
-    /// Sixteen consecutive machines are computed together if they have equal numbers of boards and channels and the
-    /// same program. This is faster.
+    /// Sixteen consecutive machines are computed together if they have one GP, equal numbers of renderers and channels,
+    /// and the same program. This is faster.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
@@ -54,12 +55,13 @@ impl SlatsModel {
     }
 }
 
-/// Number of configurations computed together: two registers of 512 bits, or four of 256 bits.
+/// Number of configurations computed together. Their times fill two registers of 512 bits, or four registers of 256
+/// bits.
 ///
-/// Each step depends on the previous one, so twice the width of a register takes little more time than one register.
+/// Each computing step depends on the previous one. Two registers therefore take little more time than one.
 const TOGETHER: usize = 16;
 
-/// Computes fields with the widest vector instructions of the processor.
+/// Computes fields of 16 machines with the widest vector instructions of the host's processor.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)
@@ -75,7 +77,7 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     end(models, arrays, done)
 }
 
-/// Starts renderers with the bottom regions of the previous field, if copies are split.
+/// Starts renderers with the copies of the previous field's bottom regions, if copies are split.
 #[inline(always)]
 fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     if models[0].split {
@@ -84,8 +86,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the acceptance of the last clump, and `cpu` the time at which the
-/// first GP is free.
+/// Computes the copies of a field. `rendered` is the time at which the last clump was accepted, and `cpu` the time at
+/// which the first GP is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -109,7 +111,8 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Computes copies by renderers that receive their commands one after the other, starting at `from`.
+/// Computes the copies of all renderers. From the time `from`, the renderers receive their commands one after the
+/// other.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],
@@ -126,7 +129,7 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
-/// Closed form of experiments with Slats.
+/// Closed form of Slats: it computes the summary of an experiment, and two estimates, without simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -139,21 +142,24 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(summary(experiment.length(), &model, times))
 }
 
-/// Number of fields before the first picture in the result window.
+/// Number of fields before the first picture that counts in the result.
 ///
-/// It covers start-up, the field in which the host's first view is sent, and the field in which this view is drawn.
+/// They cover the start-up, the field in which the host's first view is sent, and the field in which this view is
+/// drawn.
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
-/// Returns the number of fields needed, or `None` if fields are late. In the steady state all fields are equally late.
+/// Returns the number of fields that an experiment needs. Returns `None` if pictures are late, because in the steady
+/// state all of them are equally late.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let (_, times) = steady_field(experiment).ok()?;
     times.in_time.then_some(FIELDS_BEFORE + 1)
 }
 
-/// Returns the steady state of an experiment.
+/// Returns the model of an experiment and the times of a field in the steady state.
 ///
-/// If all clumps of a GP are equal, their mean is exact. Otherwise each clump is computed for the first view.
+/// If all clumps of a GP are equal, the field's times follow exactly from their mean. Otherwise each clump is computed
+/// for the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();

@@ -1,14 +1,14 @@
-//! Ideal pictures: pixels with their depths, and the pixels at which several primitives are nearest.
+//! Ideal pictures: colours and depths of pixels, and the pixels at which several primitives are equally near.
 
 use crate::shade::Paint;
 use image::{Rgb, RgbImage};
 use pxpl5_wire::format::Z_BITS;
 use std::collections::BTreeMap;
 
-/// Depth of a pixel on which nothing is drawn: the farthest of 24 bits.
+/// Depth of a pixel on which no primitive is drawn: the largest 24-bit number.
 pub const DEPTH_FARTHEST: u32 = (1 << Z_BITS) - 1;
 
-/// The correct picture of a view.
+/// The correct picture of a view, with depths.
 #[derive(Clone, Debug)]
 pub struct IdealPicture {
     image: RgbImage,
@@ -16,38 +16,41 @@ pub struct IdealPicture {
     ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
 }
 
-/// A pixel at which several primitives are nearest, with exactly the same depth.
+/// A pixel at which two or more primitives have exactly the same depth and no other primitive is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tie<'a> {
     /// Column, counted from the left.
     pub x: u32,
     /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Red, green and blue of each of the nearest primitives, in the order of the display list.
+    /// Red, green and blue of each of these primitives, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 
 impl IdealPicture {
-    /// Returns the image. At a tie it shows the primitive that comes first in the display list.
+    /// Returns the image. A pixel with a tie has the colour of the primitive that comes first in the display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
     }
 
-    /// Returns the depth of every pixel in 24 bits, row by row: 0 is the near plane, [`DEPTH_FARTHEST`] an empty pixel.
+    /// Returns the 24-bit depth of every pixel, row by row. The depth is 0 at the near plane and [`DEPTH_FARTHEST`] at
+    /// an empty pixel.
     #[must_use]
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
 
-    /// Returns the pixels at which the order of arrival decides, row by row.
+    /// Returns the pixels with a tie, row by row. On the machine, the order in which commands arrive determines their
+    /// colours.
     pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
         self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
     }
 
-    /// Returns the pixels (x, y) of another image that differ and are not explained by a tie, row by row.
+    /// Returns the pixels (x, y) of another image whose colour is wrong, row by row. At a tie, the colour of each of
+    /// the nearest primitives is right.
     ///
-    /// If `other` has a different size, all of its pixels are returned.
+    /// If `other` has a different size, all its pixels are returned.
     #[must_use]
     pub fn differences(&self, other: &RgbImage) -> Vec<[u32; 2]> {
         let same_size = other.dimensions() == self.image.dimensions();
@@ -62,7 +65,7 @@ impl IdealPicture {
     }
 }
 
-/// The nearest primitive at a pixel, with its depth and colour.
+/// The nearest primitive at a pixel: its depth, index and colour or surface.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     depth: u32,
@@ -70,25 +73,25 @@ struct Nearest {
     paint: Paint,
 }
 
-/// Pixels while primitives are being drawn.
+/// The nearest primitive of every pixel while primitives are drawn.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// Colours of further primitives that are as near as the first one.
+    /// Colours or surfaces of further primitives with the same depth as the nearest one, by row and column.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 
 impl DepthBuffer {
-    /// Creates an empty buffer. Depths of at least `far` are behind everything.
+    /// Creates an empty buffer. A pixel with a depth of `far` or more is not drawn.
     pub(crate) fn new(width: u32, height: u32, far: u32) -> Self {
         Self { width, far, nearest: vec![None; (width * height) as usize], tied: BTreeMap::new() }
     }
 
-    /// Draws one pixel of a primitive. Primitives are numbered in the order of drawing.
+    /// Draws one pixel of a primitive. `primitive` is the index of the primitive in the order of drawing.
     ///
-    /// `paint` is called only if the primitive is at least as near as the nearest one.
+    /// `paint` is called only if the primitive is nearer than the pixel's nearest primitive so far, or equally near.
     pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
         let [x, y] = pixel.map(i32::cast_unsigned);
         let place = &mut self.nearest[(y * self.width + x) as usize];
@@ -101,8 +104,8 @@ impl DepthBuffer {
         }
     }
 
-    /// Returns the picture over a background. `colour` and `depth` convert the stored values of each pixel; depths
-    /// become 24 bits.
+    /// Returns the picture with a background colour. `colour` converts the stored value of a pixel to its colour.
+    /// `depth` converts a stored depth to 24 bits.
     pub(crate) fn finish(
         self,
         background: [u8; 3],

@@ -1,4 +1,4 @@
-//! Drawing of primitives in the order of the display list, pixel by pixel.
+//! Ideal pictures of display lists. Primitives are drawn in the order of the list, pixel by pixel.
 
 use crate::picture::{DepthBuffer, IdealPicture};
 use crate::shade::{Paint, Surface, component, normal};
@@ -10,9 +10,11 @@ use pxpl5_wire::Linear;
 use pxpl5_wire::format::SUBPIXEL_BITS;
 use std::ops::Range;
 
-/// Returns the ideal picture of a display list for an eye of a view (0, or 0 and 1).
+/// Returns the ideal picture of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a
+/// right eye.
 ///
-/// `picture` gives the lines, the shading and the widths of the layout. Its binning and `pixels` are ignored.
+/// `picture` defines the lines, the shading and the layout of pixel memory. Its fields `binning` and `pixels` are
+/// ignored.
 ///
 /// # Panics
 ///
@@ -22,7 +24,8 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
     ideal_picture_of(list, |_| true, view, eye, picture)
 }
 
-/// Returns the ideal picture of the chosen structures only. `chosen` gets the index of a structure in the list.
+/// Returns the ideal picture of the chosen structures only. `chosen` gets a structure's index in the list, and returns
+/// true to draw it.
 ///
 /// # Panics
 ///
@@ -58,7 +61,7 @@ struct Raster<'a> {
     widths: Widths,
 }
 
-/// A structure that is drawn.
+/// A structure to draw, with its transform.
 struct Placed<'a> {
     place: &'a PlacedStructure,
     transform: &'a Transform,
@@ -123,7 +126,7 @@ impl Raster<'_> {
         self.widths.stored_depth(plane.at(x, y) as u32)
     }
 
-    /// Calls `sink` for each pixel (x, row of the picture) that lies inside all edges.
+    /// Calls `sink` for each pixel inside all three edges. The arguments are the pixel's column and row in the picture.
     fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
         let viewport = &self.picture.viewport;
         let grid = viewport.grid();
@@ -138,7 +141,7 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of some regions, which enclose a sphere.
+    /// Calls `sink` for each pixel of the given regions, which together contain a sphere.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {
@@ -150,9 +153,10 @@ impl Raster<'_> {
     }
 }
 
-/// Returns the columns or rows that may lie between the outermost of three corners, with one extra at either end.
+/// Returns the range of columns or rows that a triangle can cover, with one additional column or row at each end.
 ///
-/// Corners are in subpixels. Row r is line `first + r * step` of the frame, and there are `count` rows.
+/// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame;
+/// there are `count` rows.
 fn between(corners: &[i32; 3], [first, step]: [i32; 2], count: u32) -> Range<i32> {
     let low = corners.iter().copied().fold(i32::MAX, i32::min) >> SUBPIXEL_BITS;
     let high = corners.iter().copied().fold(i32::MIN, i32::max) >> SUBPIXEL_BITS;

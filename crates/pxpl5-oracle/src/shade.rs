@@ -1,4 +1,5 @@
-//! Colours of pixels: planes of colour, or normals that are shaded when all primitives are drawn.
+//! Colours of pixels. A pixel holds its final colour, or the normal of a surface that is shaded after all primitives
+//! are drawn.
 
 use pxpl5_renderer::Shade;
 use pxpl5_wire::Linear;
@@ -7,9 +8,9 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 /// The value that a primitive stores at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Paint {
-    /// The final colour: red, green, blue.
+    /// The final colour: red, green and blue.
     Lit([u8; 3]),
-    /// A surface that is shaded when all primitives are drawn.
+    /// A surface whose colour is computed after all primitives are drawn.
     Surface(Surface),
 }
 
@@ -30,29 +31,30 @@ impl Paint {
     }
 }
 
-/// Largest cosine, which has 10 bits; 1024 would be 1.0.
+/// Largest value of a cosine, a number of 10 bits. The cosine 1.0 would be 1024.
 const COSINE_MAX: i32 = 1023;
 
-/// Number of times the cosine of a highlight is squared.
+/// Number of times that the cosine of a highlight is squared. This makes the highlight small.
 const SQUARINGS: usize = 5;
 
-/// Returns a colour component of a plane, truncated to 8 bits.
+/// Returns a colour component at a pixel, truncated to 8 bits. `plane` is the linear expression of the component.
 pub(crate) fn component(plane: &Linear, x: i32, y: i32) -> u8 {
     (plane.at(x, y) >> COLOUR_FRACTION_BITS) as u8
 }
 
-/// Returns a component of a normal, truncated to its bits in two's complement.
+/// Returns a component of a normal at a pixel, truncated to its bits in two's complement. `plane` is the component's
+/// linear expression.
 pub(crate) fn normal(plane: &Linear, x: i32, y: i32) -> i32 {
     two_s_complement(plane.at(x, y) >> NORMAL_FRACTION_BITS, NORMAL_BITS)
 }
 
-/// Returns the low bits of a number as a two's complement number.
+/// Returns the value of the lowest `bits` bits of a number, read in two's complement.
 pub(crate) fn two_s_complement(value: i32, bits: u32) -> i32 {
     value << (32 - bits) >> (32 - bits)
 }
 
 impl Surface {
-    /// Returns the shaded colour under a light, by the formula of [`Shade`].
+    /// Returns the surface's colour under a light source, by the formula of [`Shade`].
     fn lit(&self, shade: &Shade) -> [u8; 3] {
         let diffuse = self.cosine(shade.light);
         let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| (cosine * cosine) >> 10);
@@ -62,8 +64,8 @@ impl Surface {
         self.colour.map(|component| (((i32::from(component) * intensity) >> 8) + white).min(255) as u8)
     }
 
-    /// Returns the cosine between the normal and a vector, 0 if they point away from each other. A zero normal gives
-    /// the largest cosine.
+    /// Returns the cosine of the angle between the normal and a vector, or 0 if the angle is obtuse. If the normal is
+    /// zero, returns the largest cosine.
     fn cosine(&self, vector: [i16; 3]) -> i32 {
         let square: i32 = self.normal.iter().map(|n| n * n).sum();
         let length = square.isqrt();

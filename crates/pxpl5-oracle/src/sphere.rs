@@ -1,25 +1,25 @@
-//! A sphere at a pixel: silhouette, root, depth.
+//! Values of a sphere at a pixel: silhouette, square root and depth.
 
 use crate::shade::two_s_complement;
 use crate::widths::{ROOT_BITS, Widths};
 use pxpl5_geometry::{GouraudSphere, SphereSetup};
 use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 
-/// Number of upper bits of the root that contribute to a colour.
+/// Number of upper bits of the square root that contribute to a colour.
 const COLOUR_ROOT_BITS: u32 = 8;
 const NORMAL_ROOT_BITS: u32 = 10;
 
-/// Depth and root of a sphere at a pixel that it covers.
+/// Depth and square root of a sphere at a pixel that the sphere covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpherePoint {
     pub(crate) depth: u32,
-    /// Floor of the square root, in `root_bits` bits.
+    /// Square root of the silhouette expression, rounded down to an integer of `root_bits` bits.
     root: u32,
     root_bits: u32,
 }
 
 impl SpherePoint {
-    /// Returns the sphere's values at (x, y); `None` outside the sphere.
+    /// Returns the sphere's values at a pixel, or `None` if the pixel is outside the sphere.
     pub(crate) fn at(setup: &SphereSetup, x: i32, y: i32, widths: Widths) -> Option<Self> {
         let silhouette = u64::try_from(setup.silhouette.at(x, y)).ok()?;
         let missing = ROOT_BITS - widths.root_bits;
@@ -34,7 +34,8 @@ impl SpherePoint {
         (self.root >> (self.root_bits - bits)) as i32
     }
 
-    /// Returns the colour: limit(linear + (upper root x factor >> 8)), where the sum has 10 bits.
+    /// Returns the colour at a pixel: limit(linear + (upper root x factor >> 8)). The sum in the outer parentheses has
+    /// 10 bits.
     pub(crate) fn colour(&self, sphere: &GouraudSphere, x: i32, y: i32) -> [u8; 3] {
         let root = self.upper_root(COLOUR_ROOT_BITS);
         std::array::from_fn(|i| {

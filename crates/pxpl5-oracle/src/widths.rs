@@ -1,13 +1,13 @@
-//! Field widths that depend on the layout of pixel memory.
+//! Numbers of bits of a pixel's fields that depend on the layout of pixel memory.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 
-/// Field widths that depend on the layout of pixel memory.
+/// Numbers of bits of a pixel's fields that depend on the layout of pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's root, 10 to 12. Layouts without a root have the value 12, but cannot draw spheres.
+    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres; the value is then 12.
     pub(crate) root_bits: u32,
 }
 
@@ -16,16 +16,16 @@ impl Widths {
         Self { z_bits: layout.plan().z.width.into(), root_bits: layout.root_bits().map_or(ROOT_BITS, u32::from) }
     }
 
-    /// Returns a depth with all its bits as pixel memory stores it.
+    /// Returns a depth with the bits that pixel memory stores. `depth` has all bits that a renderer computes.
     pub(crate) const fn stored_depth(self, depth: u32) -> u32 {
         depth >> (Z_FRACTION_BITS + Z_BITS - self.z_bits)
     }
 
-    /// Returns a stored depth as a display receives it, in 24 bits. Bits that the layout does not store are 0.
+    /// Returns a stored depth in 24 bits, as a display receives it. Bits that the layout does not store are 0.
     pub(crate) const fn sent_depth(self, stored: u32) -> u32 {
         stored << (Z_BITS - self.z_bits)
     }
 }
 
-/// Bits of the root for which a sphere's operands are computed.
+/// Number of bits of the square root for which a sphere's operands are computed.
 pub(crate) const ROOT_BITS: u32 = 12;

@@ -1,4 +1,4 @@
-//! Tests of the ideal renderer against geometry and light that can be computed by hand.
+//! Tests of the ideal renderer: its pictures must have shapes and colours that can be computed by hand.
 
 use glam::{Mat4, Vec3};
 use image::Rgb;
@@ -12,8 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// Returns a list in which a unit is a pixel, x to the right and y up from the picture's lower border, seen along -z,
-/// from 0 to 100.
+/// Returns a display list with one unit for each pixel. x points right, y points up from the picture's lower border,
+/// and the eye looks along -z, from depth 0 to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure {
@@ -145,8 +145,8 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
     }
 }
 
-/// With light from the eye, a facing surface has full light and a highlight of 96 of 255. At 60 degrees it has half the
-/// light, and the 32nd power of the highlight's cosine is 0.
+/// The light comes from the eye. A surface that faces the eye has full light and a highlight of 96 of 255. A surface at
+/// 60 degrees has half the light, and the 32nd power of the highlight's cosine is 0.
 #[test]
 fn phong_follows_the_cosine() {
     for (turn_deg, light, highlight) in [(0.0_f32, 1.0_f32, 96.0), (60.0, 0.5, 0.0)] {

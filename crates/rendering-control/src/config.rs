@@ -1,4 +1,4 @@
-//! Configuration: the boards and the picture.
+//! Configuration of Rendering Control: the boards and the picture.
 
 use crate::rules::EyeDrawing;
 use pphigs::{Picture, Share};
@@ -16,18 +16,20 @@ pub struct RenderingControlConfig {
     pub slaves: Vec<NodeId>,
     /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the first port of each frame buffer: one for a mono picture, or the left and the right eye's.
+    /// Node of the first port of each frame buffer. A mono picture has one frame buffer; a stereo picture has one for
+    /// the left and one for the right eye.
     pub frame_buffers: Vec<NodeId>,
-    /// Nodes of all ports of the frame buffers: the first port of each, then the second ports. Regions use the ports of
-    /// their eye in turn.
+    /// Nodes of all frame-buffer ports: first the first port of each frame buffer, then the second ports. The regions
+    /// of an eye use the ports of its frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// Picture that is drawn for each eye.
+    /// Parameters of the picture that is drawn for each eye.
     pub picture: Picture,
-    /// Largest number of finished regions that a renderer keeps in its backing store while their frame buffer is not
+    /// Largest number of finished regions that a renderer stores in its backing store while their frame buffer is not
     /// available.
     ///
-    /// The renderer meanwhile continues with the next region. With 0 it waits for the copy with the region in pixel
-    /// memory. The backing store limits the number to `renderer.backing_bits / renderer.kept_bits`.
+    /// The renderer meanwhile continues with the next region. With 0, the renderer keeps the region in pixel memory and
+    /// waits for its copy. The size of the backing store limits the number to `renderer.backing_bits /
+    /// renderer.kept_bits`.
     pub regions_stored: usize,
 }
 
@@ -38,7 +40,7 @@ impl RenderingControlConfig {
         self.frame_buffers.len() as u64
     }
 
-    /// Returns the drawing of a frame for its first eye.
+    /// Returns the first drawing of a frame, which is the picture of its first eye.
     pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
         EyeDrawing::first_of(frame, self.eyes())
     }
@@ -47,7 +49,7 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// Returns the surface of a drawing, which is the picture of its eye.
+    /// Returns the surface on which a drawing is shown: the display of the drawing's eye.
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }
@@ -60,8 +62,7 @@ impl RenderingControlConfig {
         self.picture.viewport
     }
 
-    /// Returns the half of the frame buffer that is not shown while this frame is drawn. Buffer 0 is shown at the
-    /// start.
+    /// Returns the half of the frame buffer that is hidden while this frame is drawn. Half 0 is visible at the start.
     pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
         (frame.next().0 % 2) as u8
     }
@@ -78,20 +79,20 @@ impl RenderingControlConfig {
         }
     }
 
-    /// Returns the port of an eye's frame buffer that receives a region.
+    /// Returns the frame-buffer port that receives a region of an eye's picture.
     fn port(&self, eye: SurfaceId, region: RegionId) -> NodeId {
         let eyes = self.frame_buffers.len();
         let of_an_eye = (self.frame_buffer_ports.len() / eyes).max(1);
         self.frame_buffer_ports[usize::from(region.0) % of_an_eye * eyes + eye.index()]
     }
 
-    /// Returns the eye whose frame buffer has a port; `None` for any other node.
+    /// Returns the eye to whose frame buffer a port belongs. Returns `None` if the node is no frame-buffer port.
     pub(crate) fn eye_at(&self, port: NodeId) -> Option<usize> {
         let place = self.frame_buffer_ports.iter().position(|node| *node == port)?;
         Some(place % self.frame_buffers.len())
     }
 
-    /// Returns the primitives that slave `index` holds.
+    /// Returns the share of the primitives that the slave with index `index` holds.
     #[must_use]
     pub fn share(&self, list: &std::sync::Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(std::sync::Arc::clone(list), index, self.slaves.len())

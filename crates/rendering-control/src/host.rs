@@ -1,4 +1,4 @@
-//! The host: performs SEND.
+//! Program of the host: it performs SEND.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::StageOrder;
@@ -7,16 +7,17 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits for the edits.
+/// Sends frame after frame. For each frame it reads the tracker, sends view and edits over the host's link to all GPs,
+/// and waits for the end of EDIT.
 ///
-/// SEND of a frame may not begin before EDIT of the previous frame has finished (TR94).
+/// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///
-/// `start_of` returns the time at which the host begins a frame that it is ready for: immediately, on demand, or `None`
-/// for never. `view_of` returns a view whose pose is sampled at a time.
+/// `start_of` gets the time at which the host is ready for a frame, and returns the time at which the frame begins. It
+/// returns `None` if no further frame begins. `view_of` returns a view whose pose is sampled at the given time.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] if another message than the master's answer arrives.
+/// [`Fault::Protocol`] if a message arrives that is not the master's answer.
 pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,
@@ -38,7 +39,7 @@ pub async fn host(
         let sent = gp.send_batch(batch).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, frame, None);
-        // The next SEND may not begin before these edits are applied.
+        // The next SEND must not begin before these edits are applied.
         let received = gp.receive().await;
         if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
             return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });

@@ -1,4 +1,4 @@
-//! The master GP: it synchronizes host, slaves, renderers and frame buffers.
+//! Program of the master GP: it synchronizes host, slaves, renderers and frame buffers.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -8,17 +8,17 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
-/// State of a renderer, as known to the master.
+/// State of a renderer, as far as the master knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
-    /// The slaves hold a token for this renderer.
+    /// The slaves hold the token of a region that this renderer draws.
     Receiving,
-    /// The renderer keeps a finished region in pixel memory until a frame buffer is available.
+    /// The renderer holds a finished region in pixel memory until the region's frame buffer is available.
     Holding(EyeDrawing, RegionId),
 }
 
-/// A copy that the rules permit.
+/// A copy that may begin now, according to the rules.
 #[derive(Clone, Copy, Debug)]
 struct AllowedCopy {
     renderer: usize,
@@ -27,17 +27,17 @@ struct AllowedCopy {
     way: CopyPath,
 }
 
-/// State of RENDER of one eye.
+/// Progress of the RENDER stage for one eye.
 #[derive(Debug)]
 struct RenderStage {
     drawing: EyeDrawing,
-    /// Regions that have no renderer yet, heaviest first.
+    /// Regions that no renderer has been assigned to yet, heaviest first.
     unassigned: VecDeque<RegionId>,
-    /// Number of tokens that the slaves hold.
+    /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
 }
 
-/// Reports of the slaves for a frame or drawing that not all slaves have finished.
+/// Counted reports of the slaves about a frame or drawing that some slaves have not finished.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
@@ -48,31 +48,31 @@ struct RegionMaster {
     gp: Gp,
     config: RenderingControlConfig,
     completed: Completed,
-    /// The next frame for EDIT.
+    /// The first frame whose EDIT has not been ordered yet.
     next_edit: PictureNumber,
     /// The first drawing whose TRANSFORM is not permitted yet.
     next_transform: EyeDrawing,
     /// The next frame for which a swap will be requested.
     next_swap: PictureNumber,
     edited: SlaveReports,
-    /// Reports for drawing number `completed.transformed` and the drawings after it.
+    /// Reports on unfinished drawings. The first element belongs to the drawing with number `completed.transformed`.
     transformed: VecDeque<SlaveReports>,
-    /// Weights of the regions, for transformed drawings that are not rendered yet.
+    /// Weights of the regions (their numbers of bin entries), for drawings that are transformed but not rendered.
     weights: VecDeque<Vec<u64>>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer that wait for a frame buffer, oldest first.
+    /// Finished regions in the backing store of each renderer, which wait for their frame buffer, oldest first.
     stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
-    /// Number of regions that have arrived in each frame buffer.
+    /// Number of regions that have arrived in each frame buffer since the start.
     copied_regions: Vec<u64>,
     next_slave: usize,
 }
 
-/// Runs the master's program.
+/// Runs the program of the master GP.
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit.
+/// [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit in memory.
 pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);
@@ -110,8 +110,8 @@ impl RegionMaster {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// Returns `Some(Some(message))`, or `Some(None)` if the frame buffers have swapped since the last call of
-    /// `begin_one`.
+    /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if the frame buffers have swapped
+    /// since the last call of `begin_one`.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -123,7 +123,7 @@ impl RegionMaster {
         self.config.frame_buffers.iter().map(|node| self.gp.status(*node)).min().unwrap_or(0)
     }
 
-    /// Begins the most urgent action that the rules permit. Returns false if there is none.
+    /// Begins the most urgent action that the rules permit. Returns false if they permit none.
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
@@ -167,7 +167,7 @@ impl RegionMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Begins RENDER of the next drawing if the rules permit it, and sorts its regions, heaviest first.
+    /// Begins RENDER of the next drawing if the rules permit it. Sorts the drawing's regions by weight, heaviest first.
     fn begin_render(&mut self) {
         let drawing = EyeDrawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
@@ -187,7 +187,7 @@ impl RegionMaster {
         Some((renderer, region))
     }
 
-    /// Gives the token of a region to the next slave in turn.
+    /// Sends the token of a region to a slave. The slaves take turns as the first holder of a token.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
         // The renderer receives commands from all slaves in turn.
         let Some(rendering) = &mut self.rendering else { return };
@@ -209,7 +209,7 @@ impl RegionMaster {
         self.gp.send(slave, words, body).await;
     }
 
-    /// Returns the destination of a region after its last commands.
+    /// Returns where a region's pixels go after the region's last commands.
     fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
         if self.completed.may_copy(drawing) {
             RegionEnd::Copied
@@ -220,8 +220,8 @@ impl RegionMaster {
         }
     }
 
-    /// Returns the first renderer's copy that the rules permit. A region in the backing store comes before one in pixel
-    /// memory.
+    /// Returns a copy that the rules permit, of the renderer with the lowest index. A region in the backing store is
+    /// copied before a region in pixel memory.
     fn next_allowed_copy(&self) -> Option<AllowedCopy> {
         (0..self.renderers.len()).find_map(|renderer| {
             let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
@@ -233,7 +233,7 @@ impl RegionMaster {
         })
     }
 
-    /// Sends the copy command of a region whose COPY was not permitted yet when its token was sent.
+    /// Sends the copy command of a region whose token was sent before COPY was permitted.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),
@@ -318,8 +318,8 @@ impl RegionMaster {
         }
     }
 
-    /// Returns true if a drawing has been copied. Regions reach a frame buffer drawing by drawing, so their count is
-    /// enough.
+    /// Returns true if all regions of a drawing have been copied. It is enough to count regions, because the drawings
+    /// reach a frame buffer in order.
     fn is_copied(&self, drawing: EyeDrawing) -> bool {
         let regions = u64::from(self.config.grid().regions());
         self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0

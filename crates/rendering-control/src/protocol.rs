@@ -1,4 +1,4 @@
-//! The messages between host, master and slaves, encoded as words.
+//! Messages between host, master, slaves and renderers, encoded as words.
 
 use crate::rules::EyeDrawing;
 use pphigs::FrameView;
@@ -15,34 +15,34 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token: the slave that holds it may send commands of one region to one renderer.
+/// A token. The slave that holds it may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: EyeDrawing,
     pub(crate) region: RegionId,
-    /// Index of the renderer.
+    /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that still need the token, including its holder.
+    /// Number of slaves that have not finished with the token, including the slave that holds it.
     pub(crate) slaves_left: u16,
-    /// End of the region, for which the last slave adds a command.
+    /// Destination of the region's pixels at its end. The last slave adds the command for this destination.
     pub(crate) end: RegionEnd,
 }
 
-/// Destination of a region after its last commands.
+/// Destination of a region's pixels after the region's last commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RegionEnd {
-    /// The region stays in pixel memory, and the renderer waits.
+    /// The region stays in pixel memory, and the renderer waits for a copy command.
     Held,
-    /// The region goes to the backing store and stays there.
+    /// The region goes to the renderer's backing store and stays there.
     Stored,
-    /// The region is copied to its frame buffer.
+    /// The region goes to its frame buffer at once.
     Copied,
 }
 
 impl RegionEnd {
     const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
 
-    /// Returns the way in the region's copy command; `None` if there is no command.
+    /// Returns the path in the region's copy command, or `None` if the region needs no copy command.
     pub(crate) const fn way(self) -> Option<CopyPath> {
         match self {
             Self::Held => None,
@@ -65,18 +65,18 @@ pub(crate) enum StageOrder {
     EditsDone(PictureNumber),
     /// From master to slaves: TRANSFORM of a drawing may begin.
     Transform(EyeDrawing),
-    /// From slave to master: a drawing is transformed. Contains the number of entries in each region's bin.
+    /// From slave to master: a drawing is transformed. The message contains the number of entries in each region's bin.
     Transformed(EyeDrawing, Vec<u32>),
-    /// From master to slave or slave to slave: a token.
+    /// From master to slave, or from slave to slave: a token.
     Token(Token),
-    /// From last slave to master: a region's commands have been accepted.
+    /// From the last slave to the master: all commands of a region have been accepted.
     Accepted(Token),
-    /// From renderer to master: a region has arrived in the frame buffer with this node.
+    /// From renderer to master: a region has arrived in the frame buffer with the node `frame_buffer`.
     Copied { frame_buffer: NodeId },
 }
 
 impl StageOrder {
-    /// Returns the length in words, and the body of a message.
+    /// Returns the length in words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words))
@@ -105,7 +105,7 @@ impl StageOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words; `None` if they are no message of this protocol.
+    /// Decodes words. Returns `None` if the words are no message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
@@ -122,12 +122,12 @@ impl StageOrder {
     }
 }
 
-/// Encodes a message of a tag and the number of a frame or drawing.
+/// Encodes a message that consists of a tag and the number of a frame or drawing.
 fn numbered(tag: Word, number: u64) -> [Word; 3] {
     [tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the number of a [`numbered`] message.
+/// Decodes the frame or drawing number of a message that [`numbered`] has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
     let low = *words.get(1)?;
     let high = *words.get(2)?;

@@ -1,27 +1,27 @@
-//! The rules of TR94 for the start of each stage, as functions of the progress of all stages.
+//! The rules of TR94: functions that tell from the progress of all stages whether a stage may begin.
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of one eye's picture of a frame, or of the whole picture of a mono frame.
+/// Number of a *drawing*: the picture of one eye in a stereo frame, or the whole picture of a mono frame.
 ///
-/// Drawings are counted over all frames in order, from 0, the left eye of frame 0.
+/// Drawings are numbered in order through all frames. Number 0 is the left eye of frame 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EyeDrawing(pub u64);
 
 impl EyeDrawing {
-    /// Returns the drawing of a frame for its first eye; `eyes` is the number of eyes per frame.
+    /// Returns the first drawing of a frame. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
         Self(frame.0 * eyes)
     }
 
-    /// Returns the frame of the drawing; `eyes` is the number of eyes per frame.
+    /// Returns the frame that contains the drawing. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn frame(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
-    /// Returns the eye of the drawing, 0 or 1; `eyes` is the number of eyes per frame.
+    /// Returns the eye of the drawing, 0 or 1. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
@@ -34,9 +34,9 @@ impl EyeDrawing {
     }
 }
 
-/// Progress of the pipeline: the number of drawings or frames that have passed each stage.
+/// Progress of the pipeline: for each stage, the number of drawings or frames that have passed the stage.
 ///
-/// A drawing is the picture of one eye, or of a mono frame. All stages work in order.
+/// A drawing is the picture of one eye, or the whole picture of a mono frame. Every stage processes drawings in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
     /// Number of eyes of a frame: 1 or 2.
@@ -51,7 +51,7 @@ pub struct Completed {
     pub rendered: u64,
     /// Number of drawings that are complete in a frame buffer.
     pub copied: u64,
-    /// Number of frames that have been swapped in.
+    /// Number of frames that a swap of the frame buffers has made visible.
     pub swapped: u64,
 }
 
@@ -64,8 +64,9 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// It needs SEND of the frame, TRANSFORM of the previous frame, and two free buffers: RENDER of the 2nd previous
-    /// and COPY of the 3rd previous eye (mono: frame).
+    /// Three things must be complete: SEND of the frame, TRANSFORM of the previous frame, and the work on older
+    /// drawings that still use buffers. The latter are RENDER of the 2nd previous eye (mono: frame) and COPY of the 3rd
+    /// previous eye.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = EyeDrawing::first_of(frame, self.eyes);
@@ -74,43 +75,45 @@ impl Completed {
 
     /// Returns true if TRANSFORM of an eye may begin.
     ///
-    /// TR94 requires that EDIT of its frame has begun; this function requires EDIT by all slaves. It also requires
-    /// RENDER of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for the first eye of a
-    /// frame, for which each slave starts as soon as its own edits are done.
+    /// TR94 requires that EDIT of the eye's frame has begun; this function requires that all slaves have finished EDIT.
+    /// It also requires RENDER of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for
+    /// the first eye of a frame: each slave begins that eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Returns true if a bin context and a renderer context are free for a drawing. Each processor and renderer has two
-    /// contexts.
+    /// Returns true if a bin context of the slaves and a region context of the renderers are free for a drawing. Each
+    /// processor and each renderer has two contexts.
     const fn buffers_free(&self, drawing: EyeDrawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
-    /// Returns true if RENDER of an eye may begin. It needs TRANSFORM of the eye by all slaves, and RENDER of the
-    /// previous eye.
+    /// Returns true if RENDER of an eye may begin. All slaves must have finished TRANSFORM of this eye, and RENDER of
+    /// the previous eye must be complete.
     #[must_use]
     pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the back half of a frame buffer is free, which means that the previous frame has been swapped
-    /// in.
+    /// Returns true if the hidden half of the drawing's frame buffer is free. It is free when the previous frame has
+    /// become visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: EyeDrawing) -> bool {
         self.swapped >= drawing.frame(self.eyes).0
     }
 
-    /// Returns true if COPY of an eye may begin. It needs a free frame buffer and COPY of the previous eye.
+    /// Returns true if COPY of an eye may begin. The frame buffer must be free, and COPY of the previous eye must be
+    /// complete.
     ///
-    /// Each frame buffer has its own ring port, but TR94 copies one eye after the other, to one frame buffer at a time.
+    /// Each frame buffer has its own ring port. TR94 nevertheless copies to only one frame buffer at a time, one eye
+    /// after the other.
     #[must_use]
     pub const fn may_copy(&self, drawing: EyeDrawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
-    /// Returns true if a frame may be swapped in, which means that all its eyes are complete.
+    /// Returns true if a swap may make a frame visible, which requires that COPY of all its eyes is complete.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
         self.copied >= EyeDrawing::first_of(frame.next(), self.eyes).0

@@ -1,4 +1,4 @@
-//! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the interrupt program.
+//! Programs of a slave GP: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
 use crate::config::RenderingControlConfig;
 use crate::master::copy_order;
@@ -15,26 +15,27 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State shared by both programs of a slave.
+/// State that both programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     views: VecDeque<FrameView>,
-    /// The first frame whose EDIT is not permitted yet.
+    /// The first frame that the master has not permitted for EDIT.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The bins of both contexts; `None` for an empty context.
+    /// The bins of both contexts. A context is one of two sets of bins; `None` if it is empty.
     bins: [Option<Arc<Pass>>; 2],
     regions_left: [u32; 2],
 }
 
 impl SlaveState {
-    /// Fills a context with the bins of a pass, which wait for a token of each region.
+    /// Fills a context with the bins of a pass. They stay until the slave has received a token for each region.
     fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
         self.bins[context] = Some(pass);
         self.regions_left[context] = regions;
     }
 
-    /// Counts a token of a context. Returns true if it was the last one, so that the context is now empty.
+    /// Counts a token for the bins of a context. Returns true if it was the last token, after which the context is
+    /// empty.
     fn count_token(&mut self, context: usize) -> bool {
         self.regions_left[context] -= 1;
         let is_last = self.regions_left[context] == 0;
@@ -47,10 +48,10 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// Returns the programs of slave number `index`, for both priorities of its board.
+/// Returns the programs of the slave with index `index`, for both priorities of its board.
 ///
-/// Each program fails with [`Fault::Memory`] if display list, commands or bins do not fit, and with [`Fault::Protocol`]
-/// for an unknown message.
+/// Each program fails with [`Fault::Memory`] if display list, commands or bins do not fit. It fails with
+/// [`Fault::Protocol`] for an unknown message.
 pub fn slave(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -95,7 +96,7 @@ async fn transform_program(
     Ok(())
 }
 
-/// Performs EDIT: applies the edits of a frame and reports to the master.
+/// Performs EDIT: applies the edits of a frame and reports this to the master.
 async fn edit(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -111,11 +112,11 @@ async fn edit(
     Ok(view)
 }
 
-/// Performs TRANSFORM: makes commands of all held primitives and puts them into bins.
+/// Performs TRANSFORM: makes the commands of all primitives that the slave holds, and puts them into bins.
 ///
-/// If the bins of two drawings do not fit together, TRANSFORM waits until RENDER of the previous drawing has freed its
-/// bins. The emulated program knows the number of entries in advance; a real program would estimate it from the
-/// previous drawing.
+/// If the bins of two drawings do not fit together, TRANSFORM waits. It begins when RENDER of the previous drawing has
+/// freed its bins. The simulated program knows the number of entries in advance; a real program would estimate it from
+/// the previous drawing.
 async fn transform(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -143,7 +144,7 @@ async fn transform(
     Ok(())
 }
 
-/// Waits until the bins of a pass fit, or the other context is empty.
+/// Waits until the bins of a pass fit in memory, or until the other context is empty.
 async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
     let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
     let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();
@@ -152,7 +153,7 @@ async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: 
     gp.until("room in the bins", || fits().then_some(())).await;
 }
 
-/// Reserves memory for commands and bins. On overflow the error names the region whose bin was being filled.
+/// Reserves memory for commands and bins. If the bins do not fit, the error names the region whose bin was too large.
 fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
     let mut bytes = 0;
@@ -163,7 +164,7 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Interrupt program: stores arriving views and permissions, and handles tokens.
+/// Runs the interrupt program: it stores views and permissions when they arrive, and handles tokens.
 async fn token_program(
     gp: Gp,
     config: RenderingControlConfig,
@@ -192,7 +193,7 @@ async fn token_program(
     }
 }
 
-/// Sends this slave's bin of the token's region, then passes the token on.
+/// Sends this slave's bin for the token's region, then passes the token on.
 async fn walk(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -214,7 +215,8 @@ async fn walk(
     free_bins(gp, state, token.drawing)
 }
 
-/// Returns the message that passes a token to the next slave, or reports its end to the master.
+/// Returns the message that passes a token to the next slave. The last slave's message tells the master that the region
+/// is finished.
 fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -227,7 +229,7 @@ fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (No
     (receiver, words, body)
 }
 
-/// Frees a drawing's commands and bins after the tokens of all its regions.
+/// Frees a drawing's commands and bins when the tokens of all its regions have been here.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
     if state.borrow_mut().count_token(usize::from(context)) {
@@ -237,7 +239,7 @@ fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(
     Ok(())
 }
 
-/// Returns the envelope of a token's region: the first slave begins the region, the last slave ends it.
+/// Returns the commands that this slave adds to its bin. The first slave begins the region, and the last slave ends it.
 fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     RegionEnvelope {

@@ -1,19 +1,19 @@
-//! Binding of regions to renderers and contexts, and the order in which regions are copied.
+//! Assignment of regions to renderers and contexts, and the order in which regions are copied.
 
 use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
-/// A region of one eye's field, with the renderer and context that keep the region for the whole run.
+/// A region of one eye's field. One context of one renderer holds this region for the whole run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BoundRegion {
     /// Eye whose picture contains the region.
     pub eye: Eye,
-    /// Number of the region in [`RegionGrid::FIELD`].
+    /// Index of the region in [`RegionGrid::FIELD`].
     pub region: RegionId,
     /// Index of the renderer in [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Context of the renderer's pixel memory that holds the region.
+    /// Index of the context in the renderer's pixel memory that holds the region.
     pub context: u8,
 }
 
@@ -34,14 +34,15 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Distributes the regions round-robin to the renderers, one kind (half and eye) after the other.
+    /// Distributes the regions round-robin to the renderers. The order is: top left eye, top right eye, bottom left
+    /// eye, bottom right eye.
     ///
-    /// So each renderer gets nearly the same number of every kind. Clumps that follow this order keep all renderers
-    /// busy.
+    /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent in this order, so that
+    /// all renderers have work.
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError::TooFewRenderers`] if a renderer would need more than `contexts` contexts.
+    /// [`SlatsConfigError::TooFewRenderers`] if a renderer would hold more than `contexts` regions.
     pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
@@ -60,16 +61,16 @@ impl Binding {
         Ok(Self { regions: regions.collect(), renderers, copy })
     }
 
-    /// Returns all regions in the order in which clumps are sent.
+    /// Returns all regions, in the order in which a clump is sent to them.
     #[must_use]
     pub fn regions(&self) -> &[BoundRegion] {
         &self.regions
     }
 
-    /// Returns the regions of a renderer in the order of copying, with alternating eyes.
+    /// Returns the regions of a renderer in the order of copying. The eyes alternate.
     ///
-    /// A whole copy includes both halves and begins with the left eye. A split copy includes one half (`top` or
-    /// bottom), and begins with the right eye on odd renderers.
+    /// A copy that is not split includes both halves of the picture and begins with the left eye. A split copy includes
+    /// one half (`top` or bottom). Odd renderers begin a split copy with the right eye.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
@@ -87,8 +88,8 @@ impl Binding {
     }
 }
 
-/// Reorders regions so that eyes alternate as long as both have regions left, beginning with the eye of the first
-/// region.
+/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The eye of the first region
+/// stays first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };
     let (mut ours, mut others): (Vec<_>, Vec<_>) = regions.into_iter().partition(|b| b.eye == first);

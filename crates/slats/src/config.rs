@@ -1,4 +1,4 @@
-//! Configuration: the boards, and the variant of Slats.
+//! Configuration of Slats: the boards, and the variant of the pipeline.
 
 use crate::bind::Binding;
 use crate::error::SlatsConfigError;
@@ -28,7 +28,7 @@ pub struct SlatsConfig {
     pub shading: Shading,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// True if pixels may be read. Without pixels no command words are made, and all times stay the same.
+    /// True if the run may compute pixels. Otherwise no command words are made, but all times stay the same.
     pub pixels: bool,
 }
 
@@ -37,7 +37,8 @@ impl SlatsConfig {
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError`] if regions do not fit or there is no graphics processor.
+    /// [`SlatsConfigError`] if the renderers have too few contexts for the regions, or if there is no graphics
+    /// processor.
     pub fn check(&self) -> Result<Binding, SlatsConfigError> {
         if self.processors.is_empty() {
             return Err(SlatsConfigError::NoProcessor);
@@ -55,10 +56,10 @@ impl SlatsConfig {
         }
     }
 
-    /// Returns the copy target of a region.
+    /// Returns the place in a frame buffer that receives a region.
     ///
-    /// A field is written into the lines that are not being scanned: interlace acts as the double buffer. So buffer 0
-    /// is enough without a backup buffer.
+    /// A field is written into the lines that the beam does not scan at that time. Interlace thus acts as a double
+    /// buffer, and without a backup buffer only buffer 0 is needed.
     pub(crate) fn target(&self, bound: &crate::BoundRegion, field: PeriodNumber, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SlatsConfigError {
-    /// There are more regions than contexts.
+    /// The renderers have fewer contexts than there are regions.
     #[error(
         "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
     )]

@@ -1,5 +1,5 @@
-//! Slats: a new image every NTSC field on one graphics processor (GP), or on several, which the prototype did not
-//! support.
+//! Slats: a pipeline that draws a new image for every NTSC field. It runs on one graphics processor (GP). The model
+//! also supports several GPs, which the prototype did not.
 //!
 //! ```text
 //!   retrace n                                                    retrace n+1
@@ -7,33 +7,36 @@
 //!      |    RENDER from the first clump on .............| (top half) | (bottom half)
 //! ```
 //!
-//! A field that is shown from retrace n+1 on is drawn between the retraces n and n+1, so the latency is one field.
+//! A field that is shown from retrace n+1 on is drawn between the retraces n and n+1. The latency is therefore one
+//! field.
 //!
-//! - SEND: the host sends the viewing transforms whenever the tracker has new ones. At the start of a field the newest
-//!   one is used, or the last one again if none has come. Primitives are in memory from the start.
-//! - TRANSFORM: every 30 primitives make a *clump*. The clump goes to all regions of both eyes
-//!   ([`pphigs::RegionBinning::All`], the prototype) or to the regions that it touches. There is one clump buffer.
-//! - RENDER: regions are bound to renderers, and only the lines of the coming field are drawn. A renderer keeps up to
-//!   four region contexts in its 208 bits, which leaves room only for Gouraud shading.
+//! - SEND: the host sends the viewing transforms whenever the tracker has new ones. Each field uses the newest
+//!   transforms at its start; they may be those of the previous field. Primitives are in memory from the start.
+//! - TRANSFORM: the primitives are divided into *clumps* of 30. A clump goes to all regions of both eyes
+//!   ([`pphigs::RegionBinning::All`], as in the prototype) or to the regions that it touches. There is one clump
+//!   buffer.
+//! - RENDER: every region has a fixed renderer, and only the lines of the coming field are drawn. A renderer holds up
+//!   to four region contexts in the 208 bits of its pixels. There is room only for Gouraud shading.
 //! - COPY, whole ([`CopySchedule::Whole`]): all regions are copied before the retrace.
 //! - COPY, split ([`CopySchedule::Split`]): the top regions are copied before the retrace, the bottom regions right
-//!   after it. Each renderer acknowledges its last top region. The bottom regions are ordered when all renderers have
-//!   done so, since TR94's GP makes sure that all top regions go first. An acknowledgement is a message, whose software
-//!   takes time.
-//! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): as split, but into the other buffer. If a field's
+//!   after it. Each renderer acknowledges its last top region by a message, which takes software time. When all
+//!   renderers have acknowledged, the GP orders the copies of the bottom regions. In TR94, too, the GP ensures that all
+//!   top regions go first.
+//! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): like split, but into the other buffer. If a field's
 //!   top regions are not ready at its retrace, the last complete field of the same lines is shown again. The late field
 //!   is shown at the next retrace of its lines.
-//! - Without a backup, a field that misses its retrace is shown as far as it is complete. The GPs continue with the
-//!   next whole field.
+//! - Without a backup buffer, a field that is late at its retrace is shown as far as it is complete. The GPs continue
+//!   with the field that begins at the next retrace.
 //!
-//! If there are several GPs, each holds every n-th primitive. The first GP sends the copy commands when the others have
-//! reported that their last clump was accepted.
+//! If there are several GPs, each holds every n-th primitive. The first GP sends the copy commands when all other GPs
+//! have reported that their last clump was accepted.
 //!
 //! **Not modelled:** loading of the primitives at initialization.
 //!
-//! Assumed: the odd renderers begin a split copy with the right eye, so that both frame buffers start at once. If all
-//! began with the left eye, ten regions would take six region times instead of the published five. A whole copy begins
-//! with the left eye everywhere, which gives the published 11 for 20 regions.
+//! Assumed: the odd renderers begin a split copy with the right eye, so that copies to both frame buffers start at
+//! once. If all renderers began with the left eye, ten regions would take the time of six regions instead of the
+//! published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the time of 11
+//! regions, as published.
 //!
 //! Sources: TR94, I3D95.
 

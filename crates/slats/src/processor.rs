@@ -1,4 +1,4 @@
-//! The programs of a graphics processor under Slats.
+//! The programs of a graphics processor (GP) under Slats.
 
 use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
@@ -16,26 +16,27 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Number of primitives of a clump, which fits into one message (TR94).
+/// Largest number of primitives in a clump. The commands of a clump for one region fit into one message (TR94).
 pub const CLUMP: usize = 30;
 
-/// First word of the message that tells the leading GP that a field's clumps have been accepted.
+/// First word of a message to the leading GP: the sender's clumps of a field have been accepted.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of the message by which the leading GP begins a field on the other GPs. Number and view follow.
+/// First word of the message by which the leading GP begins a field on the other GPs. The field's number and view
+/// follow.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host (leading GP only).
+    /// The newest view from the host. Only the leading GP stores it.
     newest: Option<FrameView>,
-    /// Fields that the leading GP has begun (other GPs only).
+    /// Fields that the leading GP has begun. Only the other GPs store them.
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Number of renderers that have acknowledged their last region since the last copy order.
+    /// Number of renderers that have acknowledged the copy of their last region, counted since the last copy order.
     copied: usize,
-    /// The copies of the bottom regions, which wait for the top regions.
+    /// The prepared copies of the bottom regions. They wait until the top regions are copied.
     bottom: Option<Bottom>,
-    /// Buffer that holds the last complete field of even and of odd lines.
+    /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
     /// For each field being drawn, the number of other GPs that have finished it.
     finished: Vec<(PeriodNumber, usize)>,
@@ -47,19 +48,20 @@ struct Bottom {
     chain: Chain,
     /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest period in which the copy may start, since the beam scans the lines until then.
+    /// Earliest field period in which the copy may start, since the beam still scans the lines before this period.
     not_before: PeriodNumber,
-    /// Number of renderers that copy top regions. All must have acknowledged them.
+    /// Number of renderers that copy top regions. All of them must have acknowledged their copies before the bottom
+    /// copies start.
     copiers: usize,
-    /// True from the request to show the field until the chain is started.
+    /// True from the moment at which the field is requested for display until the chain is started.
     is_taken: bool,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
 
-/// Returns the programs of GP number `index`, for both priorities of its board.
+/// Returns the programs of the GP with index `index`, for both priorities of its board.
 ///
-/// Each program fails with [`Fault::Memory`] if the display list does not fit, and with [`Fault::Protocol`] for an
+/// Each program fails with [`Fault::Memory`] if the display list does not fit. It fails with [`Fault::Protocol`] for an
 /// unknown message.
 pub fn processor(
     gp: &Gp,
@@ -90,7 +92,7 @@ pub fn processor(
     })
 }
 
-/// The frame buffers of [`CopySchedule::Backup`], which are asked to show the last complete field.
+/// The frame buffers under [`CopySchedule::Backup`]. The leading GP requests them to show the last complete field.
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
@@ -102,10 +104,11 @@ enum Event {
     Retrace(PeriodNumber),
 }
 
-/// Interrupt program: stores the newest view, counts finished GPs, and starts the copies of the bottom regions after
-/// the top ones.
+/// Runs the interrupt program: it stores the newest view and counts finished GPs. When the top regions are copied, it
+/// starts the copies of the bottom regions.
 ///
-/// With a backup it also requests, after every retrace, the field that the next period shows.
+/// With a backup buffer it also requests, after every retrace, the field that the frame buffers show in the next
+/// period.
 async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
     let mut present = gp.field();
     loop {
@@ -139,10 +142,10 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Records that all top regions of a field are copied. If the next retrace belongs to the field, requests the
-    /// field.
+    /// Records that all top regions of a field are copied. If the field is due at the next retrace, requests its
+    /// display.
     ///
-    /// The bottom regions follow, faster than the beam.
+    /// The copies of the bottom regions follow. They are faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -154,7 +157,8 @@ impl Backup {
         }
     }
 
-    /// Requests the last complete field of the lines that a period scans, unless the period has begun meanwhile.
+    /// Requests that the frame buffers show, from the start of `period` on, the last complete field of the lines of
+    /// this period. Requests nothing if the period has already begun.
     ///
     /// A later request replaces an earlier one.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
@@ -169,7 +173,8 @@ impl Backup {
 
 /// Starts the copies of a field's bottom regions when all its top regions are copied and the beam has left the lines.
 ///
-/// With a backup the field is requested first, since the copies will occupy the ports of the frame buffers.
+/// With a backup buffer the display of the field is requested first, since the copies will occupy the ports of the
+/// frame buffers.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
     // Decide within one borrow, and mark the chain as taken, since the steps below may suspend.
     let due = {
@@ -236,7 +241,7 @@ impl SlatsProcessor {
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
-    /// Leader's program: begins a field at every retrace at which the previous field is done.
+    /// Runs the leading GP's program: at each retrace it begins a new field if the previous field is finished.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
@@ -279,27 +284,29 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the bottom regions of the previous field are being copied, since the next messages clear them.
+    /// Waits until the copies of the previous field's bottom regions have started, since the next messages clear these
+    /// regions.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// Returns the period for which the next field is drawn: the coming one.
+    /// Returns the field that is drawn next: the one that begins at the next retrace.
     ///
-    /// With a backup the lines alternate even if fields are late, so that both kinds of lines get new fields.
+    /// With a backup buffer even and odd fields alternate even if fields are late, so that both kinds of lines are
+    /// renewed.
     fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
         let field = now.next();
         let same_lines = last.is_some_and(|last| FieldParity::of_field(last) == FieldParity::of_field(field));
         if self.config.copy == CopySchedule::Backup && same_lines { field.next() } else { field }
     }
 
-    /// Returns the buffer that a field is written to.
+    /// Returns the index of the frame buffer's half that a field is written to.
     fn buffer(&self, field: PeriodNumber) -> u8 {
         let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Program of the other GPs: draws this GP's share of every field that the leading GP begins.
+    /// Runs the program of the other GPs: it draws this GP's share of every field that the leading GP begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
@@ -312,15 +319,15 @@ impl SlatsProcessor {
         }
     }
 
-    /// Returns true if no other GP draws. Then the first clump clears the regions.
+    /// Returns true if there is only one GP. Its first clump then clears the regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }
 
     /// Clears all regions by a separate chain of messages.
     ///
-    /// Chains are sent one after the other. So clumps of other GPs, which begin after this chain, cannot be cleared
-    /// away.
+    /// Chains are sent one after the other. The clumps of other GPs begin after this chain, so this chain cannot clear
+    /// their pixels.
     async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
@@ -336,7 +343,7 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this GP's share of the field that is shown from the retrace of `field` on.
+    /// Draws this GP's share of a field, which is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
@@ -367,7 +374,7 @@ impl SlatsProcessor {
         Ok(())
     }
 
-    /// Sends a clump to all its regions as one chain of messages.
+    /// Sends a clump to all its regions as one chain of messages. Returns `None` if no region needs a message.
     async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) -> Option<Ticket> {
         let envelope = RegionEnvelope { begin, ..RegionEnvelope::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {
@@ -382,8 +389,8 @@ impl SlatsProcessor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    /// Returns the copy commands of the bottom regions, or of the top regions (with the bottom regions for a whole
-    /// copy).
+    /// Returns the copy commands of the top regions if `top` is true, otherwise those of the bottom regions. If copies
+    /// are not split, the commands for the top regions include the bottom regions.
     fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);

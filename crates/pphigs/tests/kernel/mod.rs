@@ -1,6 +1,7 @@
-//! A bench that runs a triangle kernel on the processor model with 8 MB of memory, and compares with native code.
+//! A bench that runs a triangle kernel on the processor model with 8 MB of memory, and compares its output with native
+//! code.
 //!
-//! The test of the kernels and the example that reports their clocks share this module.
+//! The tests of the kernels share this module with the example that reports their clocks.
 
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
@@ -27,7 +28,7 @@ const BINS: u32 = 0x60_0000;
 const RIGHT_PARAMETERS: u32 = 0x1_2500;
 const RIGHT_COMMANDS: u32 = 0x40_0000;
 
-/// Returns the room for each bin. The figures were measured with 20 bins of an NTSC frame.
+/// Returns the bytes reserved for each bin. The published figures were measured with 20 bins of an NTSC frame.
 const fn bin_bytes(regions: u32) -> u32 {
     let share = (MEMORY as u32 - BINS) / regions / 32 * 32;
     if share < 0x1_8000 { share } else { 0x1_8000 }
@@ -35,7 +36,7 @@ const fn bin_bytes(regions: u32) -> u32 {
 
 const RETURN: u32 = 0x0800;
 
-/// Returns the kernel of a schedule for Gouraud triangles in the bins of a frame, as used in the report.
+/// Returns the kernel that the report measures: Gouraud triangles in the bins of a frame, in the given schedule.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
     let picture = KernelPicture::Frame;
@@ -51,7 +52,7 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     }
 }
 
-/// Returns the kernel and its clipper, assembled.
+/// Returns the assembled program of the kernel and its clipper.
 pub(crate) fn program(kernel: Kernel) -> Program {
     let source = linear::schedule(&kernel.source()).unwrap_or_else(|e| panic!("{e}"));
     let sources = [("kernel", source.as_str()), ("clipper", &kernel.clipper_source())];
@@ -70,7 +71,7 @@ pub(crate) fn light() -> Light {
     Light { direction: [0.48, 0.6, 0.64], ambient: 0.2, diffuse: 0.7 }
 }
 
-/// A generator of numbers from -1 to 1 that are the same on every host.
+/// A generator of numbers from -1 to 1. It gives the same numbers on every host.
 struct Numbers(SplitMix64);
 
 impl Numbers {
@@ -101,7 +102,7 @@ pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
     (0..count).map(|_| numbers.triangle(size)).collect()
 }
 
-/// A strip: each vertex makes a triangle with the two vertices before it.
+/// A triangle strip: each vertex forms a triangle with the two vertices before it.
 pub(crate) struct Strip {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -151,16 +152,16 @@ pub(crate) fn triangles_of(strips: &[Strip]) -> Vec<Triangle> {
     strips.iter().flat_map(Strip::triangles).collect()
 }
 
-/// Result of a kernel in memory.
+/// Output of a kernel in memory.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Output {
     /// Words of each command, in the order of the triangles.
     pub(crate) commands: Vec<Vec<u32>>,
-    /// Regions of each command, in ascending order.
+    /// For each command, the regions that it touches, in ascending order.
     pub(crate) regions: Vec<Vec<u16>>,
 }
 
-/// Returns the results of native code for triangles in a view: the commands of all pieces, their regions, and the
+/// Returns the output of native code for triangles in a view: the commands of all pieces, their regions, and the
 /// counts.
 pub(crate) fn native(
     kernel: Kernel,
@@ -209,7 +210,8 @@ fn words(command: &Command) -> Vec<u32> {
     words
 }
 
-/// Returns the instruction heads of a triangle command, taken from a command of zeros.
+/// Returns the instruction words that all triangle commands share. They are read from an encoded command whose values
+/// are zero.
 fn heads(surface: KernelSurface) -> Heads {
     let blank = match surface {
         KernelSurface::Gouraud | KernelSurface::Precomputed => {
@@ -227,9 +229,9 @@ pub(crate) struct Bench {
     /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
-    /// Number of triangles, or of the strips' vertices.
+    /// Number of triangles. In a bench for strips, the number of vertices.
     count: u32,
-    /// Bytes of a triangle or vertex.
+    /// Bytes of a triangle in memory. In a bench for strips, the bytes of a vertex.
     step: u32,
     command_bytes: u32,
     regions: u32,
@@ -243,7 +245,7 @@ impl Bench {
         Bench::over(kernel, &view(), viewport, config, &data, triangles.len())
     }
 
-    /// Creates a bench for a view other than the one of the reports.
+    /// Creates a bench for any view, not only for the view of the reports.
     pub(crate) fn in_eye_space(
         kernel: Kernel,
         view: &ViewTransform,
@@ -350,7 +352,7 @@ impl Bench {
         }
     }
 
-    /// Returns the profile of all runs so far.
+    /// Returns the profile of all runs of the kernel so far.
     pub(crate) fn profile(&self) -> Profile {
         self.cpu.profile()
     }
