@@ -72,15 +72,16 @@ pub const TYPICAL_LEG_PX: f64 = 18.0;
 /// at the edge of this area stay within the 640 x 480 pixels of both eyes' pictures.
 pub const TYPICAL_SPREAD_PX: [f64; 2] = [540.0, 420.0];
 
-/// Mean angular speed of the head under [`crate::Sway`] of scale 1 on [`crate::HeadPath::Look`], degrees per second.
+/// Mean angular speed of the head on the path [`crate::HeadPath::Look`] under [`crate::Sway`] of scale 1, degrees per
+/// second.
 ///
 /// Published: recorded traces of headset use have a mean of 40 and a 99.9th percentile of 283.
 pub const MEAN_HEAD_SPEED_DEG_PER_S: f64 = 40.0;
 
-/// Largest angular speed of the head under [`crate::Sway`] of scale 1, degrees per second. Published: 99.9th percentile
-/// of recorded traces.
+/// Largest angular speed of the head under [`crate::Sway`] of scale 1, degrees per second. Published: the 99.9th
+/// percentile of the speed in recorded traces of headset use.
 pub const MAX_HEAD_SPEED_DEG_PER_S: f64 = 283.0;
 
-/// Upper end of the frequency band of head motion, hertz. Published: recorded yaw has practically all its energy below
+/// Upper end of the frequency band of head motion, hertz. Published: practically all energy of recorded yaw lies below
 /// this frequency.
 pub const HEAD_BAND_HZ: f64 = 2.0;
