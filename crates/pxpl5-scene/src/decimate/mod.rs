@@ -114,7 +114,7 @@ fn remove(surface: &mut Surface<'_>, triangle: u32) {
     }
 }
 
-/// The vertices, triangles and spheres that remain after decimation.
+/// The triangles and spheres that remain after decimation.
 struct Kept {
     triangles: Vec<Option<[u32; 3]>>,
     spheres: Vec<bool>,

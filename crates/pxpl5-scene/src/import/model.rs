@@ -121,7 +121,7 @@ pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
 /// A mesh as its file contains it, before it is scaled.
 pub(super) struct Model {
     pub(super) places: Places,
-    /// Unit normals of the vertices. A zero vector stands for a missing normal. The list is empty until the first
+    /// Unit normals from the file. A zero vector stands for a missing normal. The list is empty until the first
     /// normal is read.
     pub(super) normals: Vec<Vec3>,
     /// Colours of the points. The list is empty if all points have [`DEFAULT_COLOUR`].
@@ -130,7 +130,7 @@ pub(super) struct Model {
     pub(super) corners: Vec<Corner>,
     pub(super) detail: Detail,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Warnings about content whose intended meaning is uncertain.
+    /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
