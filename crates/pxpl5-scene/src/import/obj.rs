@@ -38,7 +38,7 @@ struct Reader<'a> {
     model: Model,
 }
 
-/// Numbers of points, normals and faces in a file. The lists of a model are allocated with their final lengths, because
+/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths, because
 /// a growing list is copied.
 #[derive(Default)]
 struct Counts {

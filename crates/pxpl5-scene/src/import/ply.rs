@@ -74,7 +74,7 @@ struct Rows<'a> {
     coloured: Vertices,
 }
 
-/// Greatest length of a list in any file. A list may be longer by a multiple of the number of vertices. Assumed: strips
+/// Greatest length of a list in a file without vertices. Each vertex allows `LIST_PER_VERTEX` more items. Assumed: strips
 /// of single triangles take 8 corners for each vertex of a closed surface.
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
