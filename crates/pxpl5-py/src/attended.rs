@@ -1,5 +1,5 @@
-//! Runs long work without the interpreter's lock. Meanwhile, the calling thread reports progress and listens for
-//! Ctrl-C.
+//! Execution of long work on a separate thread without the interpreter's lock. Meanwhile the calling thread reports
+//! progress and reacts to Ctrl-C.
 
 use crate::errors::failed_run;
 use pyo3::prelude::*;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// Progress of some work, and the request to stop it.
+/// Progress of long work, and a flag that asks the work to stop.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     done: AtomicU64,
@@ -17,31 +17,31 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Reports that `done` of `of` steps are done.
+    /// Stores that `done` of `of` steps are finished.
     pub(crate) fn tell(&self, done: u64, of: u64) {
         self.of.store(of, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Returns true if the work should stop.
+    /// Returns true if the caller has asked the work to stop.
     pub(crate) fn is_stopped(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
     }
 }
 
-/// Time between two checks for progress and Ctrl-C.
+/// Time between two checks for new progress and Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and of all steps, at most twenty
-/// times a second and at the end.
+/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps. It
+/// is called at most twenty times a second, and once at the end.
 ///
-/// Ctrl-C or an exception of the callback requests the work to stop, and then raises. If `waits` is true, the exception
-/// is raised after the work has stopped. If `waits` is false, it is raised at once, and the result of the work is
-/// ignored.
+/// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
+/// work has stopped. If `waits` is false, the exception is raised at once, and the result of the work is discarded.
 ///
 /// # Errors
 ///
-/// `KeyboardInterrupt`, any exception of the callback, and `RunError` for a bug of the emulator.
+/// `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
+/// emulator.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -52,7 +52,7 @@ pub(crate) fn attended<T: Send + 'static>(
     let (sender, mut results) = sync_channel(1);
     let told = Arc::clone(&progress);
     let worker = std::thread::Builder::new().name("pxpl5".to_owned()).stack_size(STACK_BYTES).spawn(move || {
-        // After a stop, the receiver may be gone, so an error is ignored.
+        // After an early return of the caller the receiver no longer exists, so an error is ignored.
         let _ = sender.send(work(told));
     });
     worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
@@ -62,7 +62,7 @@ pub(crate) fn attended<T: Send + 'static>(
         let result = py.detach(|| wait(&mut results));
         let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
         if let Err(error) = looked {
-            // Request the work to stop, and raise the exception.
+            // Ask the work to stop, and raise the exception.
             progress.given_up.store(true, Ordering::Relaxed);
             if waits {
                 py.detach(|| end(&mut results));
@@ -79,10 +79,11 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// Stack size of the worker thread, equal to that of a main thread. The emulator has not been tested with less.
+/// Stack size of the worker thread in bytes, equal to that of a main thread. The emulator has not been tested with a
+/// smaller stack.
 const STACK_BYTES: usize = 8 << 20;
 
-// The receiver is borrowed mutably, because a receiver can be sent to another thread but not shared.
+// The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
 
 fn wait<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     results.recv_timeout(LOOK)
@@ -92,7 +93,7 @@ fn end<T>(results: &mut Receiver<T>) -> Option<T> {
     results.recv().ok()
 }
 
-/// Calls the callback if the progress has changed.
+/// Calls the callback if the progress has changed since its last call.
 fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, told: &mut Option<(u64, u64)>) -> PyResult<()> {
     let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
     let Some(callback) = callback.filter(|_| now.1 > 0 && *told != Some(now)) else { return Ok(()) };

@@ -1,4 +1,5 @@
-//! Lists of everything that a user can choose: presets, parameters, pipelines, displays, scenes, keys and quantities.
+//! Lists of all names that a user can choose: presets, parameters, pipelines, displays, scenes, settings and measured
+//! quantities.
 
 use crate::errors::wrong_setting;
 use pxpl5::{ExperimentFile, MachineConfig, PRESETS, Parameter, QUANTITIES, Value, registry};
@@ -8,15 +9,15 @@ use pythonize::pythonize;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Converts a value of the library to Python.
+/// Converts a serializable value of the library to a Python object.
 pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     Ok(pythonize(py, value)?)
 }
 
-/// A number from Python, which keeps the type that Python gave it.
+/// A number from Python, which stays an integer or a real number as it was given.
 #[derive(FromPyObject)]
 pub(crate) enum Number {
-    /// An exact whole number.
+    /// An integer from 0 to 2^64 - 1.
     Whole(u64),
     /// A real number.
     Real(f64),
@@ -31,15 +32,16 @@ impl From<Number> for Value {
     }
 }
 
-/// Returns the names of the built-in machines with descriptions and sources. The machines of the papers come first.
+/// Returns the names of the built-in machines, each with a description and its source. The machines of the papers come
+/// first.
 #[pyfunction]
 pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
     PRESETS.iter().map(|preset| (preset.name, preset.about)).collect()
 }
 
-/// Returns the boards and parameters of a preset after some changes by path: ``n_gps``, ``n_renderers``, ``warnings``
-/// and a list of parameters. Each parameter is a dictionary with path, value, unit, standing, low, high, source and
-/// read_only.
+/// Returns the boards and parameters of a built-in machine after ``changes``, which maps paths of parameters to values.
+/// The result has ``n_gps``, ``n_renderers``, ``warnings`` and a list of parameters. Each parameter is a dictionary
+/// with path, value, unit, standing (where the number comes from), low, high, source and read_only.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid preset, path or value.
 #[pyfunction]
@@ -66,7 +68,8 @@ pub(crate) fn machine_parameters<'py>(
     )
 }
 
-/// Returns parameters as objects with path, value, unit, standing, range, source and read_only.
+/// Converts parameters to JSON objects with path, value, unit, standing (where the number comes from), range, source
+/// and read_only.
 pub(crate) fn described(parameters: &[Parameter]) -> Vec<serde_json::Value> {
     parameters.iter().map(described_one).collect()
 }
@@ -86,15 +89,16 @@ fn described_one(parameter: &Parameter) -> serde_json::Value {
     })
 }
 
-/// Returns the parameters of all trackers, of the host's port and of the predictors. Each is a dictionary as in
-/// :func:`machine_parameters`.
+/// Returns the parameters of all trackers, of the host's serial port and of the predictors. Each parameter is a
+/// dictionary as in :func:`machine_parameters`.
 #[pyfunction]
 pub(crate) fn tracking_parameters(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     python(py, &described(&pxpl5::tracking_parameters()))
 }
 
-/// Returns all pipelines as dictionaries with name, family, about, preset, has_closed_form and keys. Each key has name,
-/// about and values.
+/// Returns all pipelines as dictionaries with name, family, about (a description), preset, has_closed_form and keys.
+/// The keys are the pipeline's own settings, each with name, about and values. has_closed_form is true if formulas give
+/// the pipeline's times without a simulation.
 #[pyfunction]
 pub(crate) fn pipelines(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     let registry = registry();
@@ -120,25 +124,27 @@ pub(crate) fn pipelines(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     python(py, &all)
 }
 
-/// Returns the names of the displays that pipelines support.
+/// Returns the names of all displays that a pipeline can use.
 #[pyfunction]
 pub(crate) fn displays() -> Vec<&'static str> {
     registry().displays().iter().map(|entry| entry.name).collect()
 }
 
-/// Returns the names of the built-in scenes with descriptions. ``N`` stands for a number of triangles.
+/// Returns the names of the built-in scenes, each with a description. In a name, ``N`` stands for a number of
+/// triangles.
 #[pyfunction]
 pub(crate) fn builtin_scenes() -> Vec<(&'static str, &'static str)> {
     pxpl5::scene::names().to_vec()
 }
 
-/// Returns all keys of experiments except parameters, each with a description.
+/// Returns the names of all settings of experiments, each with a description. The parameters of the machine are not
+/// included.
 #[pyfunction]
 pub(crate) fn keys() -> Vec<(String, String)> {
     ExperimentFile::keys_of(&registry()).into_iter().map(|key| (key.path, key.about)).collect()
 }
 
-/// Returns the quantities that can be measured, by name, with their definitions.
+/// Returns the definitions of all quantities that an experiment can measure, by name.
 #[pyfunction]
 pub(crate) fn quantities(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);

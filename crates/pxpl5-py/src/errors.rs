@@ -1,9 +1,9 @@
-//! Converts errors of the library to exceptions of `pxpl5._errors`, with the same messages.
+//! Conversion of the library's errors to exceptions of `pxpl5._errors` with the same messages.
 
 use pyo3::prelude::*;
 use std::fmt::Display;
 
-/// Returns an exception of `pxpl5._errors` by its name.
+/// Returns the exception called `name` of `pxpl5._errors`, with the message of an error.
 pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     Python::attach(|py| {
         let class = py.import("pxpl5._errors").and_then(|module| module.getattr(name));
@@ -14,22 +14,23 @@ pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     })
 }
 
-/// Returns the exception for an invalid setting, name, file or array.
+/// Returns the exception for an invalid setting, name, file or array, with the message of an error.
 pub(crate) fn wrong_setting(error: impl Display) -> PyErr {
     raised("SettingError", &error)
 }
 
-/// Returns the exception for a run that ended early, or for a machine that cannot continue.
+/// Returns the exception for a run that ended early, or for a machine that cannot continue, with the message of an
+/// error.
 pub(crate) fn failed_run(error: impl Display) -> PyErr {
     raised("RunError", &error)
 }
 
-/// Returns the exception for a sweep folder that cannot be used.
+/// Returns the exception for a sweep whose folder cannot be used, with the message of an error.
 pub(crate) fn failed_sweep(error: impl Display) -> PyErr {
     raised("SweepError", &error)
 }
 
-/// Returns the exception for source text that cannot be assembled.
+/// Returns the exception for i860 source text that cannot be assembled, with the message of an error.
 pub(crate) fn not_assembled(error: impl Display) -> PyErr {
     raised("AssemblyError", &error)
 }

@@ -1,4 +1,4 @@
-//! An experiment that is ready to run.
+//! An experiment with checked settings, which Python can run.
 
 use crate::attended::{Progress, attended};
 use crate::errors::{failed_run, raised, wrong_setting};
@@ -22,14 +22,15 @@ use std::sync::Arc;
 pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
-    /// Python callable that supplies the motion during the run, if any.
+    /// Python function that computes the head's motion during the run, or `None` for another motion.
     motion: Option<Arc<CallableMotion>>,
     policy: Option<Arc<Asked>>,
 }
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. ``scene``, ``motion`` and ``policy`` replace the values in the settings.
+    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, it replaces the one in the
+    /// settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.
@@ -44,14 +45,14 @@ impl Experiment {
         phong: bool,
     ) -> PyResult<Self> {
         let plan = settings.plan()?;
-        // A given scene replaces the one in the settings.
+        // A scene in the arguments replaces the scene in the settings.
         let scene = match scene {
             Some(scene) => Arc::clone(&scene.scene),
             None => py.detach(|| plan.load_scene()).map_err(wrong_setting)?,
         };
         let mut native = plan.experiment(scene);
         let policy = policy.map(|policy| Arc::new(Asked::new(policy)));
-        // A policy is a pipeline of its own, so the experiment is built anew with the other settings.
+        // A policy needs a pipeline of its own, so the experiment is built again from the other settings.
         if let Some(asked) = &policy {
             let pipeline: Arc<dyn Pipeline> = Arc::new(PolicyPipeline::new(Arc::clone(asked), phong));
             native = Native::with(plan.machine.clone(), pipeline, Arc::clone(native.scene()))
@@ -63,7 +64,7 @@ impl Experiment {
                 native = native.head(head.head());
             }
         }
-        // A motion replaces the motion of the tracked head.
+        // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {
             let Some(head) = native.tracked_head().cloned() else {
                 return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
@@ -74,30 +75,30 @@ impl Experiment {
         Ok(Self { plan, native, motion, policy })
     }
 
-    /// Returns a hash of everything on which the trace depends.
+    /// Returns a hash of all settings and inputs on which the trace of the run depends.
     ///
-    /// Raises any exception of a callable.
+    /// Raises any exception of a Python function that the experiment calls.
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         let hash = py.detach(|| self.native.config_hash().to_string());
         self.check()?;
         Ok(hash)
     }
 
-    /// Returns warnings about results that no source supports: parameters outside their range, and work without code at
-    /// the cycle level.
+    /// Returns warnings about results that no source supports. They concern parameters outside their plausible range,
+    /// and work at the cycle level that no code executes.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }
 
-    /// Returns the paths of all parameters with values, units and sources, including those of the tracker.
+    /// Returns all parameters by path with values, units and sources, including those of the tracker.
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         crate::catalogue::python(py, &crate::catalogue::described(&self.plan.parameters()))
     }
 
-    /// Runs the experiment. ``threads`` threads compute pixels. ``keep_everything`` keeps the records for tables and
-    /// timelines, otherwise only statistics.
+    /// Runs the experiment. ``threads`` is the number of threads that compute pixels. If ``keep_everything`` is true,
+    /// all records for tables and timelines are kept, otherwise only statistics.
     ///
-    /// Raises :class:`pxpl5.RunError` with the observations until the error, :class:`pxpl5.TooShortError`, and
+    /// Raises :class:`pxpl5.RunError`, which carries the observations until the error, :class:`pxpl5.TooShortError` or
     /// KeyboardInterrupt.
     #[pyo3(signature = (progress = None, threads = None, keep_everything = true))]
     fn run(
@@ -112,7 +113,7 @@ impl Experiment {
         let asked = (self.motion.clone(), self.policy.clone());
         let native = self.native.clone().keep(keep);
         let result = attended(py, progress, true, move |told| run(&native, workstation, asked, told));
-        // An exception of a callable takes precedence over the error of the run.
+        // An exception of a Python function takes precedence over the error that it causes in the run.
         self.check()?;
         match result? {
             Ok(outcome) => Ok(Outcome::of(outcome, &self.plan.measure)),
@@ -120,8 +121,8 @@ impl Experiment {
         }
     }
 
-    /// Returns the measured quantities by name, at the experiment's own level, which may be the analytic one. A
-    /// quantity without a value is None.
+    /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
+    /// one. The value is None for a quantity that the run does not have.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -141,14 +142,14 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Raises any exception that a callable has raised.
+    /// Raises the exception that a Python function of the experiment has raised, if there is one.
     fn check(&self) -> PyResult<()> {
         self.motion.iter().try_for_each(|called| called.check())?;
         self.policy.iter().try_for_each(|asked| asked.check())
     }
 }
 
-/// Largest number of fields of a run that stops in every field, so that Ctrl-C takes effect soon.
+/// Greatest number of fields of a run that checks for Ctrl-C in every field.
 const LOOKED_AT: u64 = 20_000;
 
 type AskedOfPython = (Option<Arc<CallableMotion>>, Option<Arc<Asked>>);
@@ -160,7 +161,7 @@ fn run(
     told: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
-    // A short run stops in every field, a long one only for progress.
+    // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
     let host = StoppableHost { workstation, told: Arc::clone(&told), motion, policy };
@@ -171,7 +172,7 @@ fn run(
     native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
 }
 
-/// The host computer of a run that Python may stop.
+/// The host computer for a run, which lets Python stop the run.
 struct StoppableHost {
     workstation: Workstation,
     told: Arc<Progress>,
@@ -201,7 +202,7 @@ impl Host for StoppableHost {
     }
 }
 
-/// Converts an error of the library to an exception, with the observations until the error.
+/// Converts an error of the library to an exception, which carries the values measured until the error.
 fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
     let text = error.to_string();
     let (name, partial, needed) = match error {

@@ -1,4 +1,4 @@
-//! Questions over many experiments: figures, limits and comparisons.
+//! Functions that evaluate many experiments: published figures, limits and comparisons.
 
 use crate::attended::attended;
 use crate::catalogue::python;
@@ -11,23 +11,23 @@ use pxpl5::{Goal, Level, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
 
-/// Returns the level of modelling with a name.
+/// Returns the level of modelling called `name`, or raises an exception for an unknown name.
 fn level(name: &str) -> PyResult<Level> {
     let names = Level::ALL.map(Level::name).join(", ");
     let found = Level::ALL.into_iter().find(|level| level.name() == name);
     found.ok_or_else(|| wrong_setting(format!("level: expected {names}, found {name}")))
 }
 
-/// Returns the numbers of the published figures, such as 4b, with the statements of the papers.
+/// Returns the identifiers of the published figures, such as 4b, each with the statement of its paper.
 #[pyfunction]
 pub(crate) fn figure_ids() -> Vec<(&'static str, &'static str)> {
     FIGURES.iter().map(|figure| (figure.id, figure.statement)).collect()
 }
 
-/// Measures a published figure at a level, by its number. Returns a dictionary with published, simulated, unit and
-/// more.
+/// Measures a published figure at a level of modelling. ``id`` is the figure's identifier, such as 4b. Returns a
+/// dictionary with published, simulated, unit and more.
 ///
-/// Raises :class:`pxpl5.SettingError` for an unknown number, and :class:`pxpl5.RunError` if the experiment fails.
+/// Raises :class:`pxpl5.SettingError` for an unknown identifier, and :class:`pxpl5.RunError` if the experiment fails.
 #[pyfunction]
 #[pyo3(signature = (id, level = "transaction", progress = None))]
 pub(crate) fn figure<'py>(
@@ -58,7 +58,8 @@ fn row(row: &FigureRow) -> serde_json::Value {
     value
 }
 
-/// Measures all published figures with their intervals, which takes minutes. Returns a list of dictionaries.
+/// Measures all published figures and the intervals of their values. This takes minutes. Returns a list with a
+/// dictionary for each figure.
 ///
 /// Raises :class:`pxpl5.RunError` if an experiment fails.
 #[pyfunction]
@@ -75,7 +76,8 @@ pub(crate) fn figures<'py>(
     python(py, &rows)
 }
 
-/// Compares all pipelines under the same settings. Returns a dictionary whose `pipelines` has a row for each.
+/// Runs all pipelines with the same settings and compares them. Returns a dictionary whose `pipelines` has one row for
+/// each pipeline.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -103,8 +105,9 @@ pub(crate) fn compare<'py>(
 /// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,
 /// first_miss, island, unbroken_from, tried, goal, fields and scene.
 ///
-/// ``test_scene`` is full-screen, typical or None. With ``thinned``, the settings' own scene is reduced instead.
-/// ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
+/// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
+/// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
+/// ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -121,7 +124,7 @@ pub(crate) fn limit<'py>(
     let plan = settings.plan()?;
     let mut query = LimitQuery::of_plan(&plan);
     query.criterion.fields = fields.unwrap_or(query.criterion.fields);
-    // A goal in the arguments replaces that of the pipeline.
+    // A goal in the arguments replaces the goal of the pipeline.
     let own = query.criterion.goal;
     query.criterion.goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(own);
     if let Some(name) = test_scene {
@@ -130,7 +133,7 @@ pub(crate) fn limit<'py>(
         query.criterion.scene =
             found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
     }
-    // A reduced scene replaces the test scene.
+    // With `thinned`, a reduced version of the settings' scene replaces the test scene.
     if thinned {
         query.model = Some(py.detach(|| Model::load(plan.scene)).map_err(wrong_setting)?);
     }

@@ -1,4 +1,4 @@
-//! The native part of the Python package `pxpl5`, which makes the façade `pxpl5` available to Python.
+//! The native part of the Python package `pxpl5`. It makes the Rust library `pxpl5` available to Python.
 //!
 //! ```text
 //!   python/pxpl5/*.py   what users import: keywords, docstrings, notebooks, progress, Dask
@@ -10,14 +10,14 @@
 //!
 //! # Behaviour
 //!
-//! - Long work runs on a separate thread without the interpreter's lock. The calling thread reports progress and
-//!   listens for Ctrl-C (attended.rs).
+//! - Long work runs on a separate thread without the interpreter's lock. The calling thread reports progress and reacts
+//!   to Ctrl-C (attended.rs).
 //! - Pictures are passed to NumPy without a copy of their pixels. Tables are passed through the Arrow PyCapsule
 //!   interface without a copy of their columns. Vertices from NumPy are copied once.
 //! - Errors become exceptions of `pxpl5._errors` with the same messages.
 //!
-//! **Not here:** numbers, models and file formats. Code for Python only (defaults of keywords, HTML) is in
-//! python/pxpl5.
+//! **Not here:** numbers, models and file formats of the emulator. Code that only Python needs (defaults of keywords,
+//! HTML) is in python/pxpl5.
 
 mod attended;
 mod catalogue;
@@ -37,7 +37,7 @@ mod volume;
 
 use pyo3::prelude::*;
 
-/// Native part of pxpl5. Users import the package `pxpl5` instead.
+/// Native part of pxpl5. Users import the package `pxpl5` instead of this module.
 #[pymodule]
 mod _native {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Motions of the head: by name, from recordings, from arrays, or from a Python callable.
+//! Motions of the head: by name, from recordings, from arrays, or from a Python function.
 
 use crate::errors::wrong_setting;
 use glam::{DQuat, DVec3};
@@ -14,14 +14,15 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A motion of the head, which gives a pose at every instant of simulated time.
+/// A motion of the head, which has a pose at every instant of simulated time.
 ///
 /// A pose has seven numbers: the position x, y, z in metres, and a unit quaternion w, i, j, k. The quaternion rotates
-/// from the head's axes to the world's axes. Axes are right-handed with y upwards, and a head looks along its own -z.
+/// from the head's axes to the world's axes. Axes are right-handed with y upwards, and a head looks along its own -z
+/// axis.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Motion {
     pub(crate) moving: Arc<dyn Moving + Send + Sync>,
-    /// Python callable of the motion, which stores its exceptions. `None` for other motions.
+    /// Python function that computes the poses of this motion, and its exception. `None` for other motions.
     pub(crate) called: Option<Arc<CallableMotion>>,
     about: String,
 }
@@ -35,8 +36,8 @@ impl Motion {
 #[pymethods]
 impl Motion {
     /// Creates a motion from its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``,
-    /// ``synthetic:SEED``, or the path of a recording. Walks need a scene, so their names are given to the experiment
-    /// instead.
+    /// ``synthetic:SEED``, or the path of a recording. A motion that walks through the scene needs the scene, so its
+    /// name must be given to the experiment instead.
     ///
     /// Raises :class:`pxpl5.SettingError` with the expected and the found text.
     #[new]
@@ -44,12 +45,12 @@ impl Motion {
         Ok(Self::of(pxpl5::compare::motion(name).map_err(wrong_setting)?, name.to_owned()))
     }
 
-    /// Reads a recording in the project's own format, or in the format of EuRoC or TUM. The content decides the format.
-    /// With ``columns``, any table can be read.
+    /// Reads a recorded motion from a file in the project's own format, or in the format of EuRoC or TUM. The contents
+    /// of the file determine the format. With ``columns``, any table can be read.
     ///
-    /// ``columns`` gives the columns by name or number: ``t``, ``t_ms``, ``t_us`` or ``t_ns``; ``x``, ``y``, ``z`` or
-    /// ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``. ``end`` is the motion after the last sample: ``hold``, ``loop``, or
-    /// None if no run may go on.
+    /// ``columns`` maps the quantities of a sample to columns by name or number: ``t``, ``t_ms``, ``t_us`` or ``t_ns``;
+    /// ``x``, ``y``, ``z`` or ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``. ``end`` is the behaviour after the last
+    /// sample: ``hold``, ``loop``, or None if no run may continue after it.
     ///
     /// Raises :class:`pxpl5.SettingError` with line, column, and the expected and the found text.
     #[staticmethod]
@@ -66,11 +67,12 @@ impl Motion {
         Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), name))
     }
 
-    /// Creates a recording from arrays: ``times_s`` of shape (n,), rising, in seconds from the start of the run;
-    /// ``positions`` of shape (n, 3), in metres; ``quaternions`` of shape (n, 4) with w, x, y, z. Positions are
-    /// interpolated linearly and orientations by slerp. ``end`` is as in :meth:`recording`.
+    /// Creates a recorded motion from arrays. ``times_s`` has shape (n,), with rising times in seconds from the start
+    /// of the run. ``positions`` has shape (n, 3), in metres. ``quaternions`` has shape (n, 4) with w, x, y, z.
+    /// Positions are interpolated linearly and orientations by slerp. ``end`` is as in :meth:`recording`.
     ///
-    /// Raises :class:`pxpl5.SettingError` with the line number of the invalid sample, counted from 2.
+    /// Raises :class:`pxpl5.SettingError` with the line number of the invalid sample. The first sample has line number
+    /// 2.
     #[staticmethod]
     #[pyo3(signature = (times_s, positions, quaternions, *, end = None))]
     fn from_arrays(
@@ -84,11 +86,12 @@ impl Motion {
         Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), "arrays".to_owned()))
     }
 
-    /// Creates a motion from a callable. ``pose(time_s)`` must return (x, y, z, w, i, j, k) for an instant in seconds,
-    /// and always the same pose for the same instant. Another thread calls it a few thousand times for a second of
-    /// simulated time. The hash of the experiment covers ``name`` and the poses at 512 instants of the first 64 s.
+    /// Creates a motion from a Python function. ``pose(time_s)`` must return (x, y, z, w, i, j, k) for an instant in
+    /// seconds, and always the same pose for the same instant. Another thread calls the function a few thousand times
+    /// for each second of simulated time. The hash of the experiment covers ``name`` and the poses at 512 instants of
+    /// the first 64 s.
     ///
-    /// An exception of the callable ends the run, and the run raises it.
+    /// An exception of the function ends the run, and the run raises this exception.
     #[staticmethod]
     #[pyo3(signature = (pose, *, name = "callable"))]
     fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
@@ -96,10 +99,10 @@ impl Motion {
         Self { moving: called.clone(), called: Some(called), about: name.to_owned() }
     }
 
-    /// Returns the poses at instants. ``times_s`` has shape (n,), in seconds, 0 or later. The result has shape (n, 7):
-    /// x, y, z, w, i, j, k.
+    /// Returns the poses at the instants ``times_s``, an array of shape (n,) in seconds, 0 or later. The result has
+    /// shape (n, 7): x, y, z, w, i, j, k.
     ///
-    /// Raises any exception of a callable.
+    /// Raises any exception of a Python function that computes the motion.
     fn poses<'py>(&self, py: Python<'py>, times_s: PyReadonlyArray1<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let times = times_s.as_array();
         let poses: Vec<f64> = times.iter().flat_map(|time| numbers(&self.moving.pose(nearest_ps(*time)))).collect();
@@ -108,21 +111,21 @@ impl Motion {
         Ok(PyArray2::from_owned_array(py, poses))
     }
 
-    /// Returns the end of the motion in seconds, if no run may go on after it. Returns None for a motion without an
-    /// end.
+    /// Returns the time in seconds at which the motion ends, if no run may continue after it. Returns None for a motion
+    /// without an end.
     #[getter]
     fn ends_s(&self) -> Option<f64> {
         self.moving.ends_ps().map(seconds)
     }
 
-    /// Returns a description of the motion's origin.
+    /// Returns a text that describes the origin of the motion.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Motion {}>", self.about)
     }
 }
 
 impl Motion {
-    /// Raises any exception that a callable has raised since the last check.
+    /// Raises the exception that the motion's Python function has raised since the last check, if there is one.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {
             Some(called) => called.check(),
@@ -131,7 +134,7 @@ impl Motion {
     }
 }
 
-/// A motion from a Python callable.
+/// A motion whose poses a Python function computes.
 pub(crate) struct CallableMotion {
     pose: Py<PyAny>,
     name: String,
@@ -139,7 +142,7 @@ pub(crate) struct CallableMotion {
 }
 
 impl CallableMotion {
-    /// Returns true if the callable has raised an exception that is not reported yet.
+    /// Returns true if the Python function has raised an exception that is not yet reported.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
@@ -162,7 +165,7 @@ impl CallableMotion {
     }
 }
 
-/// Largest difference of a quaternion's length from 1, which allows rounding to a few digits.
+/// Largest difference between 1 and the length of a quaternion from Python. It allows rounding to a few digits.
 const UNIT: f64 = 1e-3;
 
 impl fmt::Debug for CallableMotion {
@@ -172,7 +175,8 @@ impl fmt::Debug for CallableMotion {
 }
 
 impl Moving for CallableMotion {
-    /// Returns the pose from the callable. After an exception, the head stands still until the run ends.
+    /// Returns the pose that the Python function computes. After an exception, the head stands still until the run
+    /// ends.
     fn pose(&self, t_ps: u64) -> Pose {
         if self.has_raised() {
             return Pose::IDENTITY;
@@ -192,7 +196,8 @@ impl Moving for CallableMotion {
     }
 }
 
-/// Number of instants, an eighth of a second apart, whose poses identify a callable.
+/// Number of instants, an eighth of a second apart, whose poses identify a Python function in the hash of the
+/// experiment.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 
@@ -209,7 +214,8 @@ fn end_named(name: Option<&str>) -> PyResult<End> {
     found.ok_or_else(|| wrong_setting(format!("end: expected {}, found {name}", names.join(" or "))))
 }
 
-/// Converts arrays to text in the project's own format. The text of a number gives the same number when read.
+/// Converts arrays to text in the project's own format for recorded motions. Reading the text gives exactly the same
+/// numbers.
 fn own_format(
     times_s: &ArrayView1<'_, f64>,
     positions: &ArrayView2<'_, f64>,
@@ -222,7 +228,7 @@ fn own_format(
             "positions and quaternions: expected shapes ({n}, 3) and ({n}, 4), found {found}"
         )));
     }
-    // The text has a header line and one line for each sample.
+    // The text has one header line and then one line for each sample.
     let mut text = String::from("time_s,x,y,z,qw,qx,qy,qz\n");
     for ((time, position), turn) in times_s.iter().zip(positions.rows()).zip(quaternions.rows()) {
         let values = [*time].into_iter().chain(position.iter().copied()).chain(turn.iter().copied());

@@ -1,4 +1,4 @@
-//! Results of an experiment: numbers, tables, pictures and drawings.
+//! Results of a run for Python: numbers, tables, pictures and drawings.
 
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
@@ -20,7 +20,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Results of an experiment: the machine's record and the pictures that were shown.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Outcome {
-    /// Outcome of the run. `None` after `results` has taken the outcome.
+    /// Outcome of the run before the results are computed. `results` takes it out and leaves `None`.
     outcome: Mutex<Option<pxpl5::Outcome>>,
     results: OnceLock<Results>,
     measures: Vec<Measure>,
@@ -31,12 +31,12 @@ impl Outcome {
         Self { outcome: Mutex::new(Some(outcome)), results: OnceLock::new(), measures: measures.to_vec() }
     }
 
-    /// Returns the results, which are computed at the first call. For a load that is too heavy, the computation
-    /// searches for a suitable load and may take some time.
+    /// Returns the results, which are computed at the first call. If the scene is too heavy for its goal, the
+    /// computation also searches for a suitable load. This can take some time.
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
-                // A second caller waits here until the first one has finished.
+                // A second caller waits for this lock until the first one has finished.
                 let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
                 if let Some(outcome) = outcome.take() {
                     let _ = self.results.set(Results::of_run(outcome));
@@ -51,7 +51,7 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
-    /// Reads a value of the outcome without computing the report.
+    /// Returns a value of the outcome that `at` reads. The report is not computed for this.
     fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
         let looked = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -63,7 +63,7 @@ impl Outcome {
         }
     }
 
-    /// Returns a surface by its label (`left`, `right`) or number.
+    /// Returns the identifier of a surface, given its label (`left`, `right`) or its number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
         let all: Vec<(SurfaceId, &str)> =
@@ -80,13 +80,14 @@ impl Outcome {
 
 #[pymethods]
 impl Outcome {
-    /// Returns the hash of the trace, including statistics. The command and the Rust library give the same hash.
+    /// Returns the hash of the run's trace, including statistics. The command-line program and the Rust library give
+    /// the same hash.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> PyResult<String> {
         Ok(self.run(py)?.1.trace_hash.clone())
     }
 
-    /// Returns a hash of everything on which the trace depends.
+    /// Returns a hash of all settings and inputs on which the trace depends.
     #[getter]
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |outcome| outcome.experiment().config_hash().to_string())
@@ -101,7 +102,7 @@ impl Outcome {
         })
     }
 
-    /// Returns the report as the dictionary that `pxpl5 run --json` prints.
+    /// Returns the report of the run as the same dictionary that `pxpl5 run --json` prints.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, self.run(py)?.1)
     }
@@ -111,14 +112,14 @@ impl Outcome {
         serde_json::to_string_pretty(self.run(py)?.1).map_err(wrong_setting)
     }
 
-    /// Returns the value of a quantity by its name, or None if the run has no value.
+    /// Returns the value of a measured quantity by its name, or None if the run does not have the quantity.
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
         let measure = Measure::named(name)
             .map_err(|nearest| wrong_setting(format!("there is no quantity `{name}`; did you mean `{nearest}`?")))?;
         Ok(measure.of(self.results(py)?))
     }
 
-    /// Returns all quantities by name. A quantity without a value is None.
+    /// Returns all measured quantities by name. The value is None for a quantity that the run does not have.
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         for measure in QUANTITIES.iter().filter_map(|quantity| Measure::named(quantity.name).ok()) {
@@ -127,7 +128,7 @@ impl Outcome {
         Ok(all)
     }
 
-    /// Returns the quantities that the experiment lists in ``measure``, by name.
+    /// Returns the quantities that the experiment's setting ``measure`` lists, by name.
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         let results = self.results(py)?;
@@ -135,20 +136,20 @@ impl Outcome {
         Ok(all)
     }
 
-    /// Returns a table with a row for each begun picture.
+    /// Returns a table with one row for each picture that the run has begun.
     fn pictures(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let (columns, rows) = py.detach(|| (columns(), rows(outcome)));
         Table::of(columns.iter().enumerate().map(|(i, column)| column_of(i, column, &rows)).collect())
     }
 
-    /// Returns a table with a row for each stage of each picture.
+    /// Returns a table with one row for each processing stage of each picture.
     fn stages(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let record = outcome.record();
         let stages = outcome.stages();
         let ps = |time: pxpl5::Time| time.0.cast_signed();
-        // Stages of all surfaces have no surface label.
+        // A stage that belongs to all surfaces has no surface label.
         let label = |id: SurfaceId| record.surface(id).map(|surface| surface.label.to_owned());
         Table::of(vec![
             Column::whole(
@@ -180,8 +181,8 @@ impl Outcome {
         Ok(self.run(py)?.0.record().surfaces().map(|(_, surface)| surface.label).collect())
     }
 
-    /// Returns the picture on a surface at the end of the run. Returns None without pixels, or before a picture was
-    /// shown.
+    /// Returns the picture on a surface at the end of the run. Returns None if the run computed no pixels, or showed no
+    /// picture.
     fn picture(&self, py: Python<'_>, surface: &str) -> PyResult<Option<Picture>> {
         let id = self.surface(py, surface)?;
         let (outcome, _) = self.run(py)?;
@@ -189,8 +190,8 @@ impl Outcome {
         picture.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Returns the picture on a surface at the end of a field. Returns None if the field is not over, or no longer
-    /// recorded.
+    /// Returns the picture that a viewer has seen on a surface at the end of a field. Returns None if the field is not
+    /// finished, or if its record is no longer kept.
     fn seen(&self, py: Python<'_>, surface: &str, field: u64) -> PyResult<Option<Picture>> {
         let id = self.surface(py, surface)?;
         let (outcome, _) = self.run(py)?;
@@ -198,7 +199,7 @@ impl Outcome {
         picture.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Returns the pictures of both eyes side by side at the end of the run, or None without pixels.
+    /// Returns the pictures of both eyes side by side at the end of the run, or None if the run computed no pixels.
     fn both(&self, py: Python<'_>) -> PyResult<Option<Picture>> {
         let (outcome, _) = self.run(py)?;
         let pictures = py.detach(|| {
@@ -209,9 +210,9 @@ impl Outcome {
         both.map(|picture| Picture::of(py, picture, self.texts(py)?)).transpose()
     }
 
-    /// Returns the pixel memory of a renderer at the end of the run. The array has shape (208, 128, 128) by bit, row
-    /// and column, with values 0 or 1. Returns None without pixels, and for a renderer that has no pixels. The array is
-    /// a copy.
+    /// Returns a copy of a renderer's pixel memory at the end of the run. The array has shape (208, 128, 128) by bit,
+    /// row and column, with values 0 or 1. Returns None if the run computed no pixels, or if the renderer has no
+    /// pixels.
     fn pixel_memory<'py>(&self, py: Python<'py>, renderer: usize) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
         let renderers = self.run(py)?.0.record().renderers();
         let count = renderers.len();
@@ -222,14 +223,14 @@ impl Outcome {
         Ok(planes.map(|planes| PyArray3::from_owned_array(py, planes)))
     }
 
-    /// Returns the layout of pixel memory: name, first bit and width in bits of each field.
+    /// Returns the fields of a pixel's memory: name, first bit and width in bits of each.
     fn pixel_memory_fields(&self, py: Python<'_>) -> PyResult<Vec<(String, u32, u32)>> {
         let layout: Layout = self.run(py)?.0.pipeline().layout();
         Ok(layout.ranges().into_iter().map(|range| (range.name, range.first, range.width)).collect())
     }
 
-    /// Returns a timeline as SVG. ``picture`` is the picture whose dependencies are drawn, by default the first after
-    /// the warm-up. The other arguments select the first field and the number of fields.
+    /// Returns a timeline of the run as SVG. The dependencies of one ``picture`` are drawn, by default of the first
+    /// picture after the warm-up. The other arguments give the first field and the number of fields.
     #[pyo3(signature = (picture = None, first_field = None, fields = None, title = None))]
     fn timeline(
         &self,
@@ -246,7 +247,7 @@ impl Outcome {
         Ok(py.detach(|| svg(outcome, &options)))
     }
 
-    /// Returns the run as an HTML page with pictures and a timeline.
+    /// Returns an HTML page with the pictures and a timeline of the run.
     fn page(&self, py: Python<'_>, name: &str) -> PyResult<String> {
         let (outcome, report) = self.run(py)?;
         let mut run = PageRun { name: name.to_owned(), ..PageRun::default() };
@@ -264,7 +265,7 @@ impl Outcome {
         Ok(html(&[run]))
     }
 
-    /// Returns the pixel errors of each field with their totals, or None for a run without a tracked head.
+    /// Returns the pixel errors of each field and their totals, or None for a run without a tracked head.
     fn pixel_errors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (outcome, _) = self.run(py)?;
         let errors = py.detach(|| outcome.pixel_errors());
@@ -272,7 +273,7 @@ impl Outcome {
     }
 }
 
-/// Returns a column of the table of pictures.
+/// Returns column `i` of the table of pictures, with its values from `rows`.
 fn column_of(i: usize, column: &pxpl5::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)
@@ -282,13 +283,13 @@ fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option
     stages.iter().map(of).collect()
 }
 
-/// Number of bits of pixel memory.
+/// Number of bits in the memory of one pixel.
 const BITS: usize = 208;
 
-/// Number of columns and of rows of the pixel array.
+/// Number of columns, and also of rows, in the pixel array of a renderer.
 const SIDE: usize = 128;
 
-/// Returns all bits of pixel memory, one byte for each bit.
+/// Returns all bits of a renderer's pixel memory, each as one byte.
 fn bit_planes(memory: &impl pxpl5::firmware::PixelArray) -> Array3<u8> {
     let mut planes = Array3::zeros((BITS, SIDE, SIDE));
     for bit in 0..BITS {

@@ -8,13 +8,13 @@ use pxpl5::views::png_bytes;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// A picture with 8 bits each of red, green and blue.
+/// A picture with 8 bits each of red, green and blue for every pixel.
 ///
 /// ``numpy.asarray(picture)`` and :attr:`array` give the pixels without a copy. A notebook displays the picture.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Picture {
     pixels: Py<PyArray3<u8>>,
-    /// Texts that PNG files contain in addition to the pixels.
+    /// Texts that are stored in a PNG file of the picture, as pairs of keyword and text.
     texts: Vec<(&'static str, String)>,
 }
 
@@ -26,7 +26,7 @@ impl Picture {
         Ok(Self { pixels: PyArray3::from_owned_array(py, pixels).unbind(), texts })
     }
 
-    /// Returns a copy of the pixels.
+    /// Returns a copy of the picture's pixels.
     fn copied(&self, py: Python<'_>) -> PyResult<RgbImage> {
         let pixels = self.pixels.bind(py);
         let height = pixels.dims()[0];
@@ -57,7 +57,8 @@ impl Picture {
         self.pixels.bind(py).clone()
     }
 
-    /// Returns the pixels for ``numpy.asarray``. The pixels are copied only for another type or if ``copy`` is true.
+    /// Returns the pixels for ``numpy.asarray``. They are copied only if another element type is requested or ``copy``
+    /// is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,
@@ -73,9 +74,9 @@ impl Picture {
         }
     }
 
-    /// Returns the picture as PNG, with its origin as texts.
+    /// Returns the picture as PNG data. The PNG texts state the origin of the picture.
     ///
-    /// Raises :class:`pxpl5.SettingError` if the encoder refuses the picture.
+    /// Raises :class:`pxpl5.SettingError` if the picture cannot be encoded.
     pub(crate) fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.copied(py)?;
         let bytes = py.detach(|| png_bytes(&picture, &self.texts)).map_err(wrong_setting)?;
@@ -95,7 +96,7 @@ impl Picture {
         Ok(std::fs::write(path, bytes.as_bytes())?)
     }
 
-    /// Returns a text with the size in pixels.
+    /// Returns a text that states the size of the picture in pixels.
     fn __repr__(&self, py: Python<'_>) -> String {
         let dims = self.pixels.bind(py).dims();
         format!("<pxpl5.Picture of {} x {} pixels>", dims[1], dims[0])

@@ -1,9 +1,9 @@
-//! A pipeline whose policy is a Python callable. The policy decides which renderer draws which region, and in which
-//! order.
+//! A pipeline in which a Python function decides which renderer draws which region, and in which order. This function
+//! is called the policy.
 //!
-//! The firmware is that of docs/guide/own-pipeline.md. One graphics processor draws mono frames and shows each frame as
-//! soon as it is finished. TRANSFORM ends before the policy is called, so the policy knows the number of primitives in
-//! every region.
+//! The firmware of this pipeline is that of docs/guide/own-pipeline.md. One graphics processor draws frames for a
+//! single eye and shows each frame as soon as it is finished. TRANSFORM ends before the policy is called, so the policy
+//! knows the number of primitives in every region.
 
 use crate::errors::wrong_setting;
 use pxpl5::firmware::{
@@ -20,13 +20,13 @@ use pyo3::types::PyDict;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A policy callable with the exception that it may have raised.
+/// A policy (a Python function that assigns regions to renderers), with the exception that it has raised, if any.
 pub(crate) struct Asked {
     policy: Py<PyAny>,
     raised: Mutex<Option<PyErr>>,
 }
 
-/// Decision of a policy: the number of a region and the index of its renderer.
+/// Decision of a policy for one region: the index of the region, and the index of the renderer that draws it.
 type Assignment = (u16, usize);
 
 impl Asked {
@@ -34,23 +34,24 @@ impl Asked {
         Self { policy, raised: Mutex::default() }
     }
 
-    /// Returns true if the policy has raised an exception that is not reported yet.
+    /// Returns true if the policy has raised an exception that is not yet reported.
     pub(crate) fn has_raised(&self) -> bool {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Raises the stored exception of the policy.
+    /// Raises the exception that the policy has raised, if there is one.
     pub(crate) fn check(&self) -> PyResult<()> {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
         raised.map_or(Ok(()), Err)
     }
 
-    /// Calls the policy for a frame and returns its assignments. Returns `None` if the policy raises an exception.
+    /// Calls the policy for a frame and returns the renderer for each region, in the order of drawing. Returns `None`
+    /// if the policy raises an exception.
     fn assignments(&self, frame: PictureNumber, now: Time, pass: &Pass, renderers: usize) -> Option<Vec<Assignment>> {
         let grid = pass.picture().viewport.grid();
         let regions = grid.regions() as u16;
         let primitives: Vec<u32> = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
-        // Describe the frame in a dictionary and call the policy.
+        // Describe the frame in a dictionary, and call the policy with it.
         let asked = Python::attach(|py| -> PyResult<Vec<Assignment>> {
             let about = PyDict::new(py);
             about.set_item("frame", frame.0)?;
@@ -65,7 +66,7 @@ impl Asked {
     }
 }
 
-/// Checks that every region occurs once, with an existing renderer.
+/// Checks that the assignments contain every region exactly once and only existing renderers.
 fn checked(found: Vec<Assignment>, regions: u16, renderers: usize) -> PyResult<Vec<Assignment>> {
     let mut seen = vec![false; usize::from(regions)];
     for (region, renderer) in &found {
@@ -86,12 +87,12 @@ fn checked(found: Vec<Assignment>, regions: u16, renderers: usize) -> PyResult<V
     }
 }
 
-/// A pipeline with one graphics processor that draws one frame at a time. The policy distributes the regions over the
-/// renderers.
+/// A pipeline with one graphics processor, which draws one frame at a time. A policy (a Python function) distributes
+/// the regions over the renderers.
 pub(crate) struct PolicyPipeline {
     asked: Arc<Asked>,
     phong: bool,
-    /// Number from the name of the policy, which distinguishes policies in the configuration hash.
+    /// Number derived from the name of the policy. It distinguishes policies in the configuration hash.
     name: u64,
 }
 
@@ -123,7 +124,7 @@ impl fmt::Debug for PolicyPipeline {
     }
 }
 
-/// Data that the firmware needs for drawing.
+/// Everything that the firmware needs to draw a frame.
 struct Drawing {
     ports: Ports,
     list: Arc<DisplayList>,
@@ -141,7 +142,7 @@ async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Tim
         let view = view(ViewNumber::taken_for(frame), gp.now());
         let pass = share.transform(&view, 0, picture);
         let counts = share.counts();
-        // TRANSFORM takes the times of the table for triangles and bin entries.
+        // TRANSFORM takes the times that the table has for triangles and bin entries.
         gp.spend(Span::from_ns(gp.timing().triangle_ns) * u64::from(counts.triangles)).await;
         gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
         gp.end(Stage::Transform, frame, None);
@@ -149,7 +150,7 @@ async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Tim
         let Some(assignments) = asked.assignments(frame, gp.now(), &pass, ports.renderers.len()) else { return Ok(()) };
         let buffer = (frame.next().0 % 2) as u8;
         gp.begin(Stage::Render, frame, None);
-        // Send each region to its renderer. The last message contains the copy command.
+        // Send each region to its renderer. The last message of a region contains the copy command.
         for (region, renderer) in &assignments {
             let envelope = envelope(&gp, &picture, (frame_buffer, buffer), RegionId(*region), frame);
             for message in region_messages(&pass, RegionId(*region), 0, envelope) {
@@ -158,7 +159,7 @@ async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Tim
             }
         }
         gp.end(Stage::Render, frame, None);
-        // Wait for the acknowledgement of every copy, then for the swap.
+        // Wait until every copy is acknowledged, then until the frame buffers are swapped.
         for _ in &assignments {
             gp.receive().await;
         }

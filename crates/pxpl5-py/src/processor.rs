@@ -7,14 +7,14 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::collections::BTreeMap;
 
-/// An assembled i860 program: its bytes, their address, labels and source lines.
+/// An assembled i860 program: its bytes with their address, its labels and its source lines.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Program {
     program: NativeProgram,
 }
 
-/// Assembles i860 source. ``base`` is the address of the first byte. ``name`` is the name of the source in error
-/// messages.
+/// Assembles i860 source text. ``base`` is the address of the program's first byte. ``name`` stands for the source in
+/// error messages.
 ///
 /// Raises :class:`pxpl5.AssemblyError` with all invalid lines.
 #[pyfunction]
@@ -24,8 +24,8 @@ pub(crate) fn assemble(source: &str, base: u32, name: &str) -> PyResult<Program>
     Ok(Program { program })
 }
 
-/// Returns a 32-bit word as the text of an instruction. ``address`` is the address of the word, which is needed for the
-/// targets of branches.
+/// Returns the text of the instruction that a 32-bit word encodes. ``address`` is the address of the word, from which
+/// the targets of branches are computed.
 #[pyfunction]
 #[pyo3(signature = (word, address = 0))]
 pub(crate) fn disassemble(word: u32, address: u32) -> String {
@@ -34,36 +34,36 @@ pub(crate) fn disassemble(word: u32, address: u32) -> String {
 
 #[pymethods]
 impl Program {
-    /// Returns the address of the first byte.
+    /// Returns the address of the program's first byte.
     #[getter]
     fn base(&self) -> u32 {
         self.program.base
     }
 
-    /// Returns the contents from :attr:`base` on, including gaps.
+    /// Returns the bytes of the program from address :attr:`base` on. Gaps between its parts are included.
     #[getter]
     fn bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &self.program.bytes)
     }
 
-    /// Returns the contents as words, in an array of shape (n,), uint32.
+    /// Returns the program as 32-bit words, in an array of shape (n,), uint32.
     #[getter]
     fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_vec(py, self.program.words())
     }
 
-    /// Returns the values of labels and constants, by name.
+    /// Returns the values of the program's labels and constants, by name.
     #[getter]
     fn symbols(&self) -> BTreeMap<String, u32> {
         self.program.symbols.clone()
     }
 
-    /// Returns a listing with address, word and instruction or data, one line for each word.
+    /// Returns a listing of the program with one line for each word: address, word, and instruction or data.
     fn listing(&self) -> String {
         self.program.listing(None)
     }
 
-    /// Returns a text with address, length and labels.
+    /// Returns a text that states address, length and labels of the program.
     fn __repr__(&self) -> String {
         let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
         format!(
@@ -75,7 +75,7 @@ impl Program {
     }
 }
 
-/// An i860 processor with clock, caches, memory from address 0 on, and a program.
+/// An emulated i860 processor with clock, caches, a program, and memory from address 0 on.
 #[pyclass(module = "pxpl5")]
 pub(crate) struct Processor {
     cpu: Cpu,
@@ -84,7 +84,7 @@ pub(crate) struct Processor {
 }
 
 impl Processor {
-    /// Returns the address of a label of the program, or a given address unchanged.
+    /// Returns the address of a place, which is a label of the program or already an address.
     fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
@@ -97,15 +97,16 @@ impl Processor {
     }
 }
 
-/// Largest size of memory in bytes: 1 GiB.
+/// Largest memory that a processor can have, in bytes: 1 GiB.
 const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]
 impl Processor {
-    /// Creates a processor with a program. ``memory`` is the size of memory in bytes: 8 MiB by default, as on a board,
-    /// and at most 1 GiB. The processor starts at the label ``start``, or at ``entry``, which is a label or an address.
+    /// Creates a processor with a program. ``memory`` is the size of its memory in bytes: 8 MiB by default, as on a
+    /// board, and at most 1 GiB. The processor starts at ``entry``, a label or an address. The default is the label
+    /// ``start``.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a program that does not fit, and for an unknown label.
+    /// Raises :class:`pxpl5.SettingError` for a program that does not fit into memory, and for an unknown label.
     #[new]
     #[pyo3(signature = (program, *, memory = 0x0080_0000, entry = None))]
     fn new(program: &Program, memory: usize, entry: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -121,7 +122,7 @@ impl Processor {
             .map_err(|_| wrong_setting(format!("{size} bytes at {base:#x} do not fit {memory:#x} bytes of memory")))?;
         let start = program.symbol("start").unwrap_or(base);
         let mut made = Self { cpu: Cpu::at(Config::cycle(), start), memory: ram, program };
-        // The clocks of each word are recorded for `profile`.
+        // The clocks spent at each word are recorded for `profile`.
         made.cpu.watch(Some(AddressProfile::new(base, size.div_ceil(4))));
         if let Some(entry) = entry {
             made.cpu.state.pc = made.place(entry)?;
@@ -129,9 +130,9 @@ impl Processor {
         Ok(made)
     }
 
-    /// Runs to ``stop``, which is a label or an address, or for at most ``budget`` instructions. The default is the
-    /// label ``end``, or the end of the program. The run does not hold the interpreter's lock. Returns ``stopped`` or
-    /// ``exhausted``.
+    /// Runs until the program reaches ``stop``, a label or an address, but for at most ``budget`` instructions. The
+    /// default of ``stop`` is the label ``end``, or the end of the program. The run does not hold the interpreter's
+    /// lock. Returns ``stopped`` if ``stop`` was reached, otherwise ``exhausted``.
     ///
     /// Raises :class:`pxpl5.RunError` for a trap, with its cause and address, and :class:`pxpl5.SettingError` for an
     /// unknown label.
@@ -143,7 +144,7 @@ impl Processor {
             None => self.program.symbol("end").unwrap_or(end),
         };
         let mut left = budget;
-        // The run is divided into pieces, so that Ctrl-C can take effect.
+        // Run a limited number of instructions at a time, so that Ctrl-C can take effect.
         while left > 0 {
             let piece = left.min(PIECE);
             let Self { cpu, memory, .. } = self;
@@ -157,8 +158,8 @@ impl Processor {
         Ok("exhausted")
     }
 
-    /// Executes one instruction, or a pair in dual-instruction mode, with the slot of a delayed branch. Returns the new
-    /// program counter.
+    /// Executes one instruction, or two in dual-instruction mode. The instruction in the slot of a delayed branch is
+    /// executed together with the branch. Returns the new program counter.
     ///
     /// Raises :class:`pxpl5.RunError` for a trap.
     fn step(&mut self) -> PyResult<u32> {
@@ -167,7 +168,7 @@ impl Processor {
         Ok(self.cpu.state.pc)
     }
 
-    /// Returns the address of the next instruction.
+    /// Returns the program counter, which is the address of the next instruction.
     #[getter]
     fn pc(&self) -> u32 {
         self.cpu.state.pc
@@ -179,16 +180,16 @@ impl Processor {
         PyArray1::from_slice(py, &self.cpu.state.r)
     }
 
-    /// Returns a copy of the floating-point registers as bits, of shape (32,), uint32. ``.view(numpy.float32)`` gives
-    /// their values.
+    /// Returns a copy of the floating-point registers as 32-bit words, of shape (32,), uint32. ``.view(numpy.float32)``
+    /// converts the words to their floating-point values.
     #[getter]
     fn f<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.cpu.state.f)
     }
 
-    /// Sets an integer register, 1 to 31.
+    /// Sets integer register ``number``, 1 to 31.
     ///
-    /// Raises :class:`pxpl5.SettingError` for another number. Register 0 is always 0.
+    /// Raises :class:`pxpl5.SettingError` for any other number. Register 0 is always 0.
     fn set_r(&mut self, number: usize, value: u32) -> PyResult<()> {
         if !(1..32).contains(&number) {
             return Err(wrong_setting(format!("register: expected 1 to 31, found {number}")));
@@ -197,20 +198,20 @@ impl Processor {
         Ok(())
     }
 
-    /// Returns the number of clocks since the start, including freezes.
+    /// Returns the number of clocks since the start, including clocks in which the processor waits.
     #[getter]
     fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// Returns the number of executed instructions. A pair counts as two.
+    /// Returns the number of executed instructions. A pair in dual-instruction mode counts as two.
     #[getter]
     fn instructions(&self) -> u64 {
         self.cpu.instructions()
     }
 
-    /// Returns a profile of the clocks: instructions, issue, bus_requests, page_misses, instruction_misses,
-    /// data_misses, and clocks by label.
+    /// Returns a profile of the clocks as a dictionary: instructions, issue, bus_requests, page_misses,
+    /// instruction_misses, data_misses, and the clocks by label.
     fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let profile = self.cpu.profile();
         let all = PyDict::new(py);
@@ -227,10 +228,10 @@ impl Processor {
         Ok(all)
     }
 
-    /// Returns a copy of ``count`` words of memory, of shape (count,), uint32. The words begin at a label or at an
-    /// address that is a multiple of 4.
+    /// Returns a copy of ``count`` words of memory, of shape (count,), uint32. ``place`` is a label or an address,
+    /// which must be a multiple of 4.
     ///
-    /// Raises :class:`pxpl5.SettingError` for an address outside of memory.
+    /// Raises :class:`pxpl5.SettingError` for an address outside the memory.
     #[pyo3(signature = (place, count = 1))]
     fn read<'py>(
         &self,
@@ -244,9 +245,9 @@ impl Processor {
         Ok(PyArray1::from_vec(py, words))
     }
 
-    /// Writes 32-bit words to memory, from a label or an address on.
+    /// Writes 32-bit words to memory from ``place`` on, a label or an address.
     ///
-    /// Raises :class:`pxpl5.SettingError` for an address outside of memory. Nothing is written then.
+    /// Raises :class:`pxpl5.SettingError` for an address outside the memory. In this case nothing is written.
     fn write(&mut self, place: &Bound<'_, PyAny>, words: Vec<u32>) -> PyResult<()> {
         let address = self.place(place)?;
         let count = words.len();
@@ -256,11 +257,11 @@ impl Processor {
         Ok(())
     }
 
-    /// Returns a text with the program counter and the number of clocks.
+    /// Returns a text that states the program counter and the number of clocks.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Processor at {:#010x} after {} clocks>", self.cpu.state.pc, self.cpu.clocks())
     }
 }
 
-/// Number of instructions between two checks for Ctrl-C, which take some tens of milliseconds.
+/// Number of instructions between two checks for Ctrl-C. Executing so many takes some tens of milliseconds.
 const PIECE: u64 = 2_000_000;

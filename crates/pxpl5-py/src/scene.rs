@@ -1,4 +1,4 @@
-//! Scenes: built-in, from files and from arrays.
+//! Scenes for Python: built-in scenes, model files and arrays.
 
 use crate::errors::wrong_setting;
 use glam::Vec3;
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// An immutable scene: triangles and spheres in metres, with a light and the motion of a viewer.
+/// An immutable scene: triangles and spheres in metres, with lighting and the motion of a viewer's head.
 ///
 /// Axes are right-handed with y upwards. The default viewer looks along -z. Triangles are anticlockwise when seen from
 /// outside.
@@ -34,8 +34,8 @@ impl Scene {
         py.detach(|| scene::builtin(&name)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Loads a model file (PLY, OBJ or PDB). The extension decides the format. The model is moved and scaled into the
-    /// view of both eyes. With ``fit=False``, the model keeps its coordinates, in metres.
+    /// Loads a model file (PLY, OBJ or PDB). The extension determines the format. The model is moved and scaled so that
+    /// both eyes see all of it. With ``fit=False``, the model keeps its coordinates, which are then in metres.
     ///
     /// Raises :class:`pxpl5.SettingError` with the file, the position in the file, and the expected and the found text.
     #[staticmethod]
@@ -51,8 +51,8 @@ impl Scene {
     /// - ``normals``: shape (n, 3), any length above 0; None for the mean of the adjacent triangles, weighted by area.
     /// - ``colours``: shape (n, 3), red, green and blue, 0 to 255; None for a light grey.
     /// - ``spheres``: shape (k, 4), centre and radius, metres; ``sphere_colours``: shape (k, 3), 0 to 255.
-    /// - ``fit``: true to move and scale the scene like a model file; otherwise the viewer is placed to see the whole
-    ///   scene.
+    /// - ``fit``: if true, the scene is moved and scaled like a model file. Otherwise the viewer stands where the whole
+    ///   scene is visible.
     ///
     /// Raises :class:`pxpl5.SettingError` with the first invalid vertex, triangle or sphere.
     #[staticmethod]
@@ -75,7 +75,7 @@ impl Scene {
         if fit {
             fit_into_view(&mut positions, &mut balls);
         }
-        // Fill in missing normals and colours.
+        // Compute missing normals, and fill in missing colours.
         let normals = match &normals {
             Some(normals) => lengthened(points("normals", normals.as_array())?)?,
             None => mean_normals(&positions, &triangles),
@@ -92,7 +92,7 @@ impl Scene {
             .zip(&of_spheres)
             .map(|((centre, radius), colour)| Sphere { centre: *centre, radius: *radius, colour: *colour })
             .collect();
-        // The default motion sees the whole scene.
+        // The default viewer sees the whole scene.
         let (centre, radius) = ball_around(&positions, &balls);
         let parts = SceneParts {
             name: name.to_owned(),
@@ -107,7 +107,7 @@ impl Scene {
         scene::Scene::new(parts).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Returns the name, as reports show it.
+    /// Returns the name of the scene, as it appears in reports.
     #[getter]
     fn name(&self) -> &str {
         self.scene.name()
@@ -143,21 +143,21 @@ impl Scene {
         table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))
     }
 
-    /// Returns the scene with evenly removed primitives, so that at most ``primitives`` remain. The number must be 1 or
-    /// more.
+    /// Returns the same scene with at most ``primitives`` triangles and spheres, 1 or more. The removed primitives are
+    /// spread evenly.
     ///
-    /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives.
+    /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
     fn decimated(&self, py: Python<'_>, primitives: usize) -> PyResult<Self> {
         py.detach(|| self.scene.decimated(primitives)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. Closed surfaces
-    /// look the same.
+    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. A scene of closed
+    /// surfaces looks the same.
     fn culled(&self) -> Self {
         Self::of(scene::Scene::clone(&self.scene).culled())
     }
 
-    /// Returns a text with the name and the numbers of triangles and spheres.
+    /// Returns a text that states the name of the scene and its numbers of triangles and spheres.
     fn __repr__(&self) -> String {
         let scene = &self.scene;
         format!(
@@ -169,7 +169,7 @@ impl Scene {
     }
 }
 
-/// Returns rows of N values each as an array of shape (rows, N).
+/// Returns an array of shape (rows, N) from rows of N values each.
 fn table<'py, T: numpy::Element + Copy + Default, const N: usize>(
     py: Python<'py>,
     rows: impl ExactSizeIterator<Item = [T; N]>,
@@ -206,7 +206,7 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
     for (number, row) in array.rows().into_iter().enumerate() {
         let mut corners = [0; 3];
         for (corner, found) in corners.iter_mut().zip(row) {
-            // Negative indices and indices beyond the vertices are errors.
+            // An index that is negative or has no vertex is an error.
             let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
             *corner = index.ok_or_else(|| {
                 wrong_setting(format!(
@@ -225,12 +225,12 @@ fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
     Ok(array.rows().into_iter().map(ball).collect())
 }
 
-/// Converts a row to centre and radius.
+/// Converts a row of four numbers to the centre and radius of a sphere.
 fn ball(row: ArrayView1<'_, f64>) -> (Vec3, f32) {
     (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
 }
 
-/// Default colour: light grey.
+/// Default colour of surfaces: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
 
 fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
@@ -240,7 +240,7 @@ fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResu
     Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
 }
 
-/// Scales normals to unit length.
+/// Scales normals to unit length, or raises an exception for a normal without direction.
 fn lengthened(normals: Vec<Vec3>) -> PyResult<Vec<Vec3>> {
     let unit = normals.iter().enumerate().map(|(number, normal)| {
         let found = normal.try_normalize();
@@ -249,8 +249,8 @@ fn lengthened(normals: Vec<Vec3>) -> PyResult<Vec<Vec3>> {
     unit.collect()
 }
 
-/// Returns the mean normals of the adjacent triangles, weighted by area, as the importers do. A vertex without a
-/// triangle has an upward normal.
+/// Returns a normal for each vertex: the mean of the normals of adjacent triangles, weighted by area, as for model
+/// files. A vertex without a triangle has an upward normal.
 fn mean_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for corners in triangles {
@@ -261,7 +261,8 @@ fn mean_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     sums.into_iter().map(|sum| sum.normalize_or(Vec3::Y)).collect()
 }
 
-/// Returns the centre of the bounding box and the largest distance from it. Both are 0 for an empty scene.
+/// Returns the centre of the bounding box, and the largest distance of a point of the scene from this centre. Both are
+/// 0 for an empty scene.
 fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     let all = positions.iter().map(|position| (*position, 0.0)).chain(balls.iter().copied());
     let low = all.clone().fold(Vec3::INFINITY, |low, (centre, radius)| low.min(centre - radius));
@@ -273,7 +274,7 @@ fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     (middle, all.map(|(centre, radius)| centre.distance(middle) + radius).fold(0.0, f32::max))
 }
 
-/// Moves the centre to the origin and scales the scene to the size of fitted model files.
+/// Moves the centre of the scene to the origin, and scales the scene to the radius that model files get.
 fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     let (middle, radius) = ball_around(positions, balls);
     if radius <= 0.0 || !radius.is_finite() {

@@ -1,4 +1,4 @@
-//! Sweeps: points, rows and the folder that stores them.
+//! Sweeps, which run an experiment at many points of a space of settings, and the folder that stores their rows.
 
 use crate::attended::attended;
 use crate::catalogue::python;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A sweep: one experiment at every point of a space of settings.
+/// A sweep: the same experiment at every point of a space of settings.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Sweep {
     sweep: Arc<NativeSweep>,
@@ -18,7 +18,7 @@ pub(crate) struct Sweep {
 
 #[pymethods]
 impl Sweep {
-    /// Creates a sweep from settings with a space.
+    /// Creates a sweep from settings that define a space of points.
     ///
     /// Raises :class:`pxpl5.SettingError` for an invalid space.
     #[new]
@@ -27,14 +27,14 @@ impl Sweep {
         Ok(Self { sweep: Arc::new(sweep) })
     }
 
-    /// Returns the number of points.
+    /// Returns the number of points at which the sweep runs the experiment.
     #[getter]
     fn points(&self) -> u64 {
         self.sweep.space().points()
     }
 
-    /// Returns the values that all rows have in common: schema, version, machine, quantities with their definitions,
-    /// axes.
+    /// Returns the values that all rows of the sweep have in common: schema, version, machine, quantities with their
+    /// definitions, and axes of the space.
     ///
     /// Raises :class:`pxpl5.SettingError` if no point is a valid experiment.
     fn header<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -42,8 +42,9 @@ impl Sweep {
         python(py, &header)
     }
 
-    /// Simulates some points on one thread until ``seconds`` are over, and at least the first one. Returns, for each
-    /// point, its row as a line of JSON and its time in seconds.
+    /// Simulates some of the points on one thread. After ``seconds`` no further point is started, but the first point
+    /// is always simulated. Returns, for each simulated point, its row as a line of JSON and the time that it took in
+    /// seconds.
     fn rows(&self, py: Python<'_>, points: Vec<u64>, seconds: f64) -> PyResult<Vec<(String, f64)>> {
         let sweep = Arc::clone(&self.sweep);
         let at_most = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
@@ -51,7 +52,8 @@ impl Sweep {
         Ok(rows.into_iter().map(|(row, seconds)| (line(&row), seconds)).collect())
     }
 
-    /// Estimates the time of each point in seconds, by the analytic level.
+    /// Estimates the time in seconds that each point takes to simulate. The estimate uses the analytic level of
+    /// modelling.
     fn costs(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<f64>> {
         let sweep = Arc::clone(&self.sweep);
         attended(py, None, false, move |_| sweep.costs(&points))
@@ -62,7 +64,7 @@ fn line(row: &SweepRow) -> String {
     serde_json::to_string(row).unwrap_or_default()
 }
 
-/// The rows of a sweep in a folder: rows.jsonl, times.jsonl and, at the end, results.csv.
+/// The rows of a sweep in a folder, in the files rows.jsonl and times.jsonl. The file results.csv is added at the end.
 #[pyclass(module = "pxpl5._native")]
 pub(crate) struct Store {
     sweep: Arc<NativeSweep>,
@@ -77,7 +79,7 @@ impl Store {
 
 #[pymethods]
 impl Store {
-    /// Opens or creates a folder. With ``resume``, rows of finished points are kept.
+    /// Opens or creates the folder for a sweep. If ``resume`` is true, the rows of finished points are kept.
     ///
     /// Raises :class:`pxpl5.SweepError` if the folder cannot be used, is in use, or contains another sweep.
     #[new]
@@ -87,15 +89,15 @@ impl Store {
         Ok(Self { sweep: Arc::clone(&sweep.sweep), store: Some(store) })
     }
 
-    /// Returns the numbers of the points without a row, in order.
+    /// Returns the indices of the points that have no row yet, in order.
     fn missing(&mut self) -> PyResult<Vec<u64>> {
         let points = self.sweep.space().points();
         let store = self.open_store()?;
         Ok((0..points).filter(|point| !store.holds(*point)).collect())
     }
 
-    /// Stores a row, which is a line of JSON, with its time in seconds. Returns the number of its point. An existing
-    /// row of the point is kept.
+    /// Stores a row (a line of JSON) and the time in seconds that its point took. Returns the index of the point. If
+    /// the point already has a row, the existing row is kept.
     ///
     /// Raises :class:`pxpl5.SweepError` for an invalid line, and if the row cannot be written.
     fn append(&mut self, line: &str, seconds: f64) -> PyResult<u64> {
@@ -111,8 +113,8 @@ impl Store {
         Ok(row.point)
     }
 
-    /// Simulates all points without a row, on ``threads`` threads of this computer. Ctrl-C ends the sweep after the
-    /// points that are in progress. The rows of finished points are in the folder.
+    /// Simulates all points that have no row yet, on ``threads`` threads of this computer. Ctrl-C ends the sweep when
+    /// the points in progress are finished. Their rows are in the folder.
     ///
     /// Raises :class:`pxpl5.SweepError` and KeyboardInterrupt.
     #[pyo3(signature = (threads, progress = None))]
@@ -133,7 +135,7 @@ impl Store {
         result.map_err(failed_sweep)
     }
 
-    /// Returns all rows in order of their points, each as a line of JSON.
+    /// Returns all rows in the order of their points, each as a line of JSON.
     ///
     /// Raises :class:`pxpl5.SweepError` if the rows cannot be read.
     fn lines(&mut self) -> PyResult<Vec<String>> {

@@ -15,10 +15,10 @@ use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A column of a table: name, description and values.
+/// A column of a table with its name, its description and its values.
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the values with their unit, which becomes the metadata `about` of the Arrow field.
+    /// Description of the column's values with their unit. It becomes the metadata `about` of the Arrow field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }
@@ -33,11 +33,11 @@ impl Column {
     }
 }
 
-/// A table with named, typed columns.
+/// A table whose columns have names and types.
 ///
 /// pandas, polars, pyarrow and DuckDB read the table through ``__arrow_c_stream__`` without a copy of the columns:
-/// ``pyarrow.table(table)``, ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``. A column has whole
-/// numbers (int64), real numbers (float64), truth values or text. A missing value is null. :attr:`definitions` has a
+/// ``pyarrow.table(table)``, ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``. A column has integers
+/// (int64), real numbers (float64), truth values or text. A missing value is null. :attr:`definitions` has a
 /// description and the unit of each column. The metadata ``about`` of the Arrow fields has the same texts.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Table {
@@ -57,8 +57,8 @@ impl Table {
         Ok(Self { batch })
     }
 
-    /// Creates a table from objects, with a column for each key in order of first occurrence. A nested key is joined to
-    /// its parent with a point. Lists become JSON text.
+    /// Creates a table from JSON objects, one row for each object. Each key becomes a column, in the order in which
+    /// keys first occur. A nested key gets its parent's name and a point before its own name. Lists become JSON text.
     pub(crate) fn of_rows(rows: &[Map<String, Value>], about: &HashMap<String, String>) -> PyResult<Self> {
         let flat: Vec<Map<String, Value>> = rows.iter().map(flattened).collect();
         let mut names: Vec<&str> = Vec::new();
@@ -78,7 +78,7 @@ impl Table {
     }
 }
 
-/// Returns an object whose nested keys are joined with points.
+/// Returns the object without nesting. A nested key becomes its parent's name, a point and its own name.
 fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     let mut flat = Map::new();
     for (key, value) in row {
@@ -94,13 +94,13 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     flat
 }
 
-/// Returns the column of a key. The type is truth values, whole numbers or real numbers if all values have that type,
-/// otherwise text.
+/// Returns the column of values for one key. If all values are truth values, integers or numbers, the column has this
+/// type, otherwise it has text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
     let none = known.iter().all(Option::is_none);
-    // A column without values, or with any real number among numbers, is float64.
+    // A column has float64 if it has no values, or if all values are numbers and at least one is not an integer.
     let values: ArrayRef = if none || (!all(Value::is_i64) && all(Value::is_number)) {
         Arc::new(known.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
     } else if all(Value::is_i64) {
@@ -117,7 +117,8 @@ fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Creates a table from the JSON text of a list of objects, with a column for each key in order of first occurrence.
+/// Creates a table from the JSON text of a list of objects. Each key becomes a column, in the order in which keys first
+/// occur.
 ///
 /// Raises :class:`pxpl5.SettingError` for invalid text.
 #[pyfunction]
@@ -128,7 +129,7 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
 
 #[pymethods]
 impl Table {
-    /// Returns the rows as an Arrow stream of one batch, for the Arrow PyCapsule interface. ``requested_schema`` is
+    /// Returns the table as an Arrow stream of one batch, for the Arrow PyCapsule interface. ``requested_schema`` is
     /// ignored.
     #[pyo3(signature = (requested_schema = None))]
     fn __arrow_c_stream__<'py>(
@@ -152,8 +153,8 @@ impl Table {
         self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
-    /// Returns the description of each column with its unit, by column name. The text is empty if the name says
-    /// everything.
+    /// Returns the description of each column with its unit, by the column's name. The description is empty if the name
+    /// is sufficient.
     #[getter]
     fn definitions(&self) -> HashMap<String, String> {
         let schema = self.batch.schema();
@@ -161,14 +162,14 @@ impl Table {
         fields.map(|field| (field.name().clone(), field.metadata().get("about").cloned().unwrap_or_default())).collect()
     }
 
-    /// Returns a column by its name. Numbers are a NumPy array of shape (rows,), int64 or float64. With a missing
-    /// value, the array is float64 with NaN. Text and truth values are a list with None. The numbers are copied, unlike
-    /// those of Arrow's own readers.
+    /// Returns the values of a column by its name. Numbers are returned as a NumPy array of shape (rows,), int64 or
+    /// float64. If a number is missing, the array is float64 with NaN. Text and truth values are returned as a list
+    /// with None for missing values. The numbers are copied, unlike with Arrow's own readers.
     ///
     /// Raises KeyError with the existing names.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column(self.column_index(name)?);
-        // NumPy has no missing integers, so a column with gaps becomes float64.
+        // NumPy has no missing integers, so a column with missing values becomes float64.
         if let Some(whole) = column.as_any().downcast_ref::<Int64Array>() {
             if whole.null_count() == 0 {
                 return Ok(PyArray1::from_slice(py, whole.values()).into_any());
@@ -183,7 +184,7 @@ impl Table {
         Ok(PyList::new(py, values.collect::<PyResult<Vec<_>>>()?)?.into_any())
     }
 
-    /// Returns a row by its number, from 0, as a dictionary. A missing value is None.
+    /// Returns the row with index ``number``, from 0, as a dictionary. A missing value is None.
     ///
     /// Raises IndexError for a number beyond the last row.
     fn row<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyDict>> {
@@ -217,7 +218,7 @@ impl Table {
             let cells = self.batch.columns().iter().map(|column| format!("<td>{}</td>", escaped(&text(column, row))));
             format!("<tr>{}</tr>", cells.collect::<String>())
         });
-        // A line below the table tells how many rows are left out.
+        // A line below the table states the number of rows that are not shown.
         let more = self.batch.num_rows() - rows;
         let foot = if more > 0 { format!("<p>and {more} more rows</p>") } else { String::new() };
         format!(
@@ -233,14 +234,14 @@ impl Table {
     }
 }
 
-/// Number of rows that a notebook shows.
+/// Greatest number of rows that a notebook shows.
 const SHOWN_ROWS: usize = 40;
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Returns a value as text: four significant digits of a real number, and nothing for a missing value.
+/// Returns a value of a column as text. Real numbers have four significant digits, and a missing value has no text.
 fn text(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
         return String::new();
@@ -258,7 +259,7 @@ fn text(column: &ArrayRef, row: usize) -> String {
     whole.or(flag).or(words).unwrap_or_default()
 }
 
-/// Converts a value to Python.
+/// Converts one value of a column to a Python object.
 fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'py, PyAny>> {
     if column.is_null(row) {
         return Ok(py.None().into_bound(py));

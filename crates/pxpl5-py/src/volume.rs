@@ -1,4 +1,4 @@
-//! Scenes as the slices of a spinning volumetric display.
+//! Scenes drawn as slices for a spinning volumetric display.
 
 use crate::attended::attended;
 use crate::catalogue::python;
@@ -13,19 +13,20 @@ use pxpl5::volume::{Volume as Native, VolumeSettings, figures};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A drawn volume: the slices of one turn of a spinning screen.
+/// A scene drawn for a spinning volumetric display, as the slices of one turn of its screen.
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Volume {
     volume: Arc<Native>,
 }
 
-/// Returns the paths of all settings of a volume, in order.
+/// Returns the paths of all settings of the volumetric display, in order.
 #[pyfunction]
 pub(crate) fn volume_keys() -> Vec<String> {
     VolumeSettings::paper().keys()
 }
 
-/// Returns the figures of the SpatialGL paper beside those of the model: a dictionary with figures and shown.
+/// Returns the published values of the SpatialGL paper beside those of the model. The result is a dictionary with
+/// figures and shown.
 ///
 /// Raises :class:`pxpl5.SettingError` for a scene that cannot be drawn.
 #[pyfunction]
@@ -44,8 +45,8 @@ pub(crate) fn volume_figures<'py>(
 
 #[pymethods]
 impl Volume {
-    /// Draws a scene with settings ``PATH=VALUE``. Other settings have the values of the paper. See
-    /// :func:`pxpl5.volume_keys`.
+    /// Draws a scene for the volumetric display. ``assignments`` are settings ``PATH=VALUE``. All other settings have
+    /// the values of the SpatialGL paper. :func:`pxpl5.volume_keys` lists the paths.
     ///
     /// Raises :class:`pxpl5.SettingError` with the path, and the expected and the found text.
     #[staticmethod]
@@ -61,21 +62,22 @@ impl Volume {
         Ok(Self { volume: Arc::new(drawn.map_err(wrong_setting)?) })
     }
 
-    /// Returns the report as a dictionary: counts, occupancy, times of the model, and the hash of the volume.
+    /// Returns the report of the drawing as a dictionary: counts, occupancy, times of the modelled display, and the
+    /// hash of the volume.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, &py.detach(|| self.volume.report()))
     }
 
-    /// Returns the number of slices in a turn.
+    /// Returns the number of slices in one turn of the display.
     #[getter]
     fn slices(&self) -> u32 {
         self.volume.frame.planes.slices()
     }
 
-    /// Returns a copy of the lit pixels of a slice by colour, of shape (height, width, 3), uint8. The values of red,
-    /// green and blue are 0 or 1.
+    /// Returns a copy of the bits of a slice, of shape (height, width, 3), uint8. The values for red, green and blue
+    /// are 0 or 1.
     ///
-    /// Raises :class:`pxpl5.SettingError` for an unknown slice.
+    /// Raises :class:`pxpl5.SettingError` for a slice that does not exist.
     fn bits<'py>(&self, py: Python<'py>, slice: u32) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let slice = self.volume.check_slice(slice).map_err(wrong_setting)?;
         let planes = &self.volume.frame.planes;
@@ -88,10 +90,10 @@ impl Volume {
         Ok(PyArray3::from_owned_array(py, bits))
     }
 
-    /// Returns a slice as a picture after halftoning. With ``undithered``, the picture has the colours before
-    /// halftoning.
+    /// Returns the slice with index ``number`` as a picture after halftoning. If ``undithered`` is true, the picture
+    /// has the colours before halftoning.
     ///
-    /// Raises :class:`pxpl5.SettingError` for an unknown slice.
+    /// Raises :class:`pxpl5.SettingError` for a slice that does not exist.
     #[pyo3(signature = (number, *, undithered = false))]
     fn slice(&self, py: Python<'_>, number: u32, undithered: bool) -> PyResult<Picture> {
         let number = self.volume.check_slice(number).map_err(wrong_setting)?;
@@ -100,16 +102,16 @@ impl Volume {
         Picture::of(py, picture, Vec::new())
     }
 
-    /// Returns all slices as thumbnails in one picture, row by row.
+    /// Returns one picture with small versions of all slices, row by row.
     fn sheet(&self, py: Python<'_>) -> PyResult<Picture> {
         let picture = py.detach(|| sheet(&self.volume));
         Picture::of(py, picture, Vec::new())
     }
 
-    /// Returns the view of an eye over one turn, from a distance of four radii. The azimuth goes from +z to +x. Azimuth
-    /// and elevation are in degrees, and the picture is ``size`` pixels wide and high.
+    /// Returns the view of an eye during one turn of the display, from a distance of four radii. The azimuth grows from
+    /// +z to +x. Azimuth and elevation are in degrees, and the picture is ``size`` pixels wide and high.
     ///
-    /// Raises :class:`pxpl5.SettingError` for an eye that sees nothing.
+    /// Raises :class:`pxpl5.SettingError` if the eye can see nothing of the display.
     #[pyo3(signature = (azimuth_deg = 40.0, elevation_deg = 25.0, *, size = 512))]
     fn view(&self, py: Python<'_>, azimuth_deg: f64, elevation_deg: f64, size: u32) -> PyResult<Picture> {
         if !(1..=8192).contains(&size) {
@@ -121,12 +123,12 @@ impl Volume {
         Picture::of(py, picture.map_err(wrong_setting)?, Vec::new())
     }
 
-    /// Returns the view of an eye as PNG, for notebooks.
+    /// Returns a view of the volume as PNG data, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
         self.view(py, 40.0, 25.0, 384)?.png(py)
     }
 
-    /// Returns a text with the scene and the number of slices.
+    /// Returns a text that states the scene and the number of slices.
     fn __repr__(&self) -> String {
         format!("<pxpl5.Volume of {}: {} slices>", self.volume.scene, self.slices())
     }

@@ -1,45 +1,48 @@
-//! Edits: changes of a scene by the host from one frame to the next.
+//! Changes of a scene that the host sends from one frame to the next.
 
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
 
 use crate::trig;
 
-/// A new model matrix for one structure. A host sends few edits per frame (published TR94).
+/// A change of the scene by the host: a new model matrix for one structure. A host sends few of these changes per frame
+/// (published TR94).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edit {
     /// Index of the structure in [`crate::Scene::structures`].
     pub structure: usize,
-    /// Matrix from the structure's coordinates to its frame's coordinates, which replaces the previous matrix. Before
-    /// the first edit the matrix is the identity.
+    /// New matrix from the structure's coordinates to its frame's coordinates. Before the first edit the matrix is the
+    /// identity.
     pub model: Mat4,
 }
 
-/// A scripted motion of a structure: it swings about an axis like a control surface.
+/// A motion of a structure as a function of time: the structure swings about an axis like an aircraft's control
+/// surface.
 ///
 /// The angle at time t is `amplitude_deg * sin(2 pi (t / period_ps + phase_turns))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hinge {
-    /// A point on the axis, metres, in coordinates of the scene.
+    /// A point on the axis of the swing, metres, in coordinates of the scene.
     pub point: Vec3,
-    /// Direction of the axis, of any length except zero.
+    /// Direction of the axis of the swing. The vector can have any length except zero.
     pub axis: Vec3,
-    /// Greatest deflection to each side, degrees.
+    /// Greatest angle of the swing to each side, degrees.
     pub amplitude_deg: f64,
     /// Duration of a full swing, picoseconds of simulated time, above zero.
     pub period_ps: u64,
-    /// Phase of the swing at time 0, in turns.
+    /// Phase of the swing at time 0, as a fraction of the period.
     pub phase_turns: f64,
 }
 
 impl Hinge {
-    /// Returns the deflection at simulated time `time_ps` (picoseconds), degrees.
+    /// Returns the angle of the swing at simulated time `time_ps` (picoseconds), degrees.
     #[must_use]
     pub fn angle_deg(&self, time_ps: u64) -> f64 {
         let turns = (time_ps % self.period_ps) as f64 / self.period_ps as f64;
         self.amplitude_deg * trig::sin_turns(turns + self.phase_turns)
     }
 
-    /// Returns the model matrix at simulated time `time_ps` (picoseconds): a rotation about the axis.
+    /// Returns the model matrix at simulated time `time_ps` (picoseconds), which is a rotation about the axis of the
+    /// swing.
     #[must_use]
     pub fn model(&self, time_ps: u64) -> Mat4 {
         let rotation = rotation_about(self.axis.as_dvec3(), self.angle_deg(time_ps));
@@ -54,7 +57,7 @@ impl Hinge {
     }
 }
 
-/// Returns the right-handed rotation by `angle_deg` about `axis` (Rodrigues' formula).
+/// Returns the matrix of the right-handed rotation by `angle_deg` about `axis` (Rodrigues' formula).
 fn rotation_about(axis: DVec3, angle_deg: f64) -> DMat3 {
     let axis = axis.normalize_or(DVec3::Y);
     let (sin, cos) = trig::sin_cos_deg(angle_deg);
@@ -78,7 +81,8 @@ mod tests {
 
     #[test]
     fn a_hinge_is_fully_deflected_after_a_quarter_of_its_period() {
-        // 90 deg about +z through (1, 0, 0): (2, 0, 0) is one unit right of the axis and goes one unit above it.
+        // 90 degrees about +z through (1, 0, 0): the point (2, 0, 0) is one unit to the right of the axis and moves to
+        // one unit above it.
         let point = quarter_swing().model(1_000).transform_point3(Vec3::new(2.0, 0.0, 0.0));
         assert!((point - Vec3::new(1.0, 1.0, 0.0)).length() < 1e-6, "{point}");
     }

@@ -1,4 +1,4 @@
-//! Errors of model files, scenes, displays and motions.
+//! Errors in model files, scenes, displays and head motions.
 
 use std::fmt;
 use std::io;
@@ -23,12 +23,12 @@ impl fmt::Display for FilePlace {
     }
 }
 
-/// The reason why a model could not be loaded. Every message names the file, the position, the expected and the found
-/// content.
+/// The reason why a model file could not be loaded. Every message names the file, the position of the error, and the
+/// expected and found content.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The operating system reports an error: the file is missing, unreadable, or the disk failed.
+    /// The operating system reports an error: the file is missing or unreadable, or the disk failed.
     #[error("{file}: expected a readable file, found: {source}")]
     Io {
         /// Path of the file, as it was given.
@@ -36,20 +36,20 @@ pub enum LoadError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// The path leads to a directory, a device or a pipe.
+    /// The path leads to a directory, a device or a pipe instead of a file.
     #[error("{file}: expected a regular file, found {found}")]
     NotAFile {
         /// Path of the file, as it was given.
         file: String,
-        /// Kind of the path's target: "a directory" or "a device or a pipe".
+        /// Description of the object at the path: "a directory" or "a device or a pipe".
         found: &'static str,
     },
-    /// No importer reads files with this extension.
+    /// The file's extension is unknown, so no importer reads the file.
     #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
     UnknownFormat {
         /// Path of the file, as it was given.
         file: String,
-        /// The extension, or an empty text if the path has none.
+        /// The extension of the path, or an empty text if the path has no extension.
         found: String,
     },
     /// The file is larger than [`crate::config::MAX_FILE_BYTES`].
@@ -57,21 +57,21 @@ pub enum LoadError {
     TooLarge {
         /// Name of the file, as it was given.
         file: String,
-        /// Limit of a model file's size, in bytes.
+        /// Largest allowed size of a model file, in bytes.
         expected: u64,
     },
-    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file. A file that repeats
-    /// corners very often causes this error.
+    /// The model needs more memory than [`crate::config::MEMORY_TIMES_FILE`] times the size of its file. This happens
+    /// if a file refers to the same corners very often.
     #[error("{file}: expected a model that takes at most {expected} bytes, as its size allows, found {found}")]
     TooMuchMemory {
         /// Name of the file, as it was given.
         file: String,
-        /// Limit of the model's memory, in bytes.
+        /// Greatest memory that the model may take, in bytes.
         expected: u64,
         /// Memory that the model would take, in bytes.
         found: u64,
     },
-    /// The file has no bytes, or only white space.
+    /// The file is empty or contains only white space.
     #[error("{file}: expected a model, found an empty file")]
     Empty {
         /// Name of the file, as it was given.
@@ -94,12 +94,13 @@ pub enum LoadError {
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
-        /// Content that the format requires.
+        /// Description of the content that the format requires.
         expected: String,
         /// Content of the file at this position, quoted and cut to 40 characters.
         found: String,
     },
-    /// The file ends before the content that its header announces. An absurd count in a header also causes this error.
+    /// The file ends before all content that its header announces. A far too large number in the header causes this
+    /// error too.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Truncated {
         /// Name of the file, as it was given.
@@ -111,7 +112,7 @@ pub enum LoadError {
         /// Description of the content that is left in the file.
         found: String,
     },
-    /// A corner refers to a vertex or a normal that does not exist.
+    /// A corner of a face refers to a vertex or a normal that does not exist.
     #[error("{file}: {at}: expected an index of one of {expected} {what}, found {found}")]
     Index {
         /// Name of the file, as it was given.
@@ -120,21 +121,21 @@ pub enum LoadError {
         at: FilePlace,
         /// Kind of the indexed items: "vertices" or "normals".
         what: &'static str,
-        /// Number of such items in the file that the index may refer to.
+        /// Number of such items in the file. A valid index refers to one of them.
         expected: usize,
         /// The index as it is written in the file.
         found: i64,
     },
-    /// A coordinate is NaN, infinite, or beyond [`crate::config::MAX_COORDINATE`].
+    /// A coordinate is NaN, infinite, or larger than [`crate::config::MAX_COORDINATE`] in absolute value.
     #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]
     Coordinate {
         /// Name of the file, as it was given.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
-        /// Limit of the absolute coordinate, in units of the file.
+        /// Largest allowed absolute coordinate, in units of the file.
         expected: f64,
-        /// The coordinate as it was read, in units of the file.
+        /// The coordinate that was read, in units of the file.
         found: f64,
     },
     /// The file is well formed but contains nothing to draw.
@@ -142,7 +143,7 @@ pub enum LoadError {
     NothingToDraw {
         /// Name of the file, as it was given.
         file: String,
-        /// Kind of primitive that is missing: "triangle", "triangle with an area" or "atom".
+        /// Kind of content that is missing: "triangle", "triangle with an area" or "atom".
         expected: &'static str,
     },
 }
@@ -156,15 +157,15 @@ pub enum SceneError {
     UnknownScene {
         /// The requested name, cut to 40 characters.
         found: String,
-        /// The valid name with the smallest edit distance to the requested name.
+        /// The valid name that is most similar to the requested name, by the number of changed characters.
         nearest: String,
         /// All valid names, separated by commas.
         valid: String,
     },
-    /// The N of a scene such as `full-screen:N` is not a number or is out of range.
+    /// The N of a scene name such as `full-screen:N` is not a number or is out of range.
     #[error("scene {scene}: expected N {expected}, found {found:?}")]
     TriangleCount {
-        /// Name of the scene, with N in place of the number.
+        /// Name of the scene, with N in place of the number of triangles.
         scene: &'static str,
         /// Allowed values of N.
         expected: String,
@@ -176,12 +177,12 @@ pub enum SceneError {
     Kept {
         /// Name of the scene.
         scene: String,
-        /// Number of primitives in the scene.
+        /// Number of primitives that the scene has, which is the greatest allowed number.
         expected: usize,
         /// Requested number of primitives to keep.
         found: usize,
     },
-    /// A part of a scene breaks a rule of [`crate::Scene`].
+    /// A part of a scene, such as a vertex, breaks a rule of [`crate::Scene`].
     #[error("scene {scene}: {what} {index}: expected {expected}, found {found}")]
     Part {
         /// Name of the scene.
@@ -190,22 +191,22 @@ pub enum SceneError {
         what: &'static str,
         /// Index of the part, counted from 0.
         index: usize,
-        /// The rule that the part breaks.
+        /// The rule for scenes that the part breaks.
         expected: String,
         /// Description of the part that breaks the rule.
         found: String,
     },
 }
 
-/// The reason why a display or a head motion could not be created: a number out of its range.
+/// The reason why a display or a head motion could not be created: one of its numbers is out of range.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{what}: expected {expected}, found {found}")]
 pub struct RangeError {
-    /// Name of the wrong number.
+    /// Name of the number that is out of range.
     pub what: &'static str,
-    /// Allowed range, in words.
+    /// Allowed range of the number, in words.
     pub expected: &'static str,
-    /// The number that was given, in the unit of its name.
+    /// Value of the number that was given, in the unit that the name states.
     pub found: f64,
 }
 

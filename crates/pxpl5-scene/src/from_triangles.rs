@@ -1,4 +1,4 @@
-//! A scene from the arrays of a mesh.
+//! Construction of a scene from the arrays of a triangle mesh.
 
 use crate::config::FIT_DISTANCE_RADII;
 use crate::error::SceneError;
@@ -7,14 +7,16 @@ use crate::scene::{Lighting, Scene, SceneParts, Vertex};
 use crate::sway::Sway;
 use glam::Vec3;
 
-/// Colour of a mesh without colours: light grey.
+/// Colour of a mesh that has no colours of its own: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
 
 impl Scene {
-    /// Creates a scene from corners in metres and triangles that each name three of them, anticlockwise seen from outside.
+    /// Creates a scene from vertices (positions in metres) and triangles. Each triangle has the indices of three
+    /// vertices, anticlockwise seen from outside.
     ///
-    /// The mesh is light grey. The normal of a corner is the mean of its triangles' normals, weighted by area. The viewer stands in front of
-    /// the scene, on its +z side, at a distance from which all of it is visible. [`Scene::new`] takes other colours, normals and motions.
+    /// The mesh is light grey. The normal of a vertex is the mean of its triangles' normals, weighted by area. The
+    /// viewer stands in front of the scene, on its +z side, far enough away to see all of it. For other colours,
+    /// normals and head motions use [`Scene::new`].
     ///
     /// ```
     /// use glam::Vec3;
@@ -28,7 +30,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`SceneError::Part`] for an index without a corner, a coordinate that is not finite, and a mesh without triangles.
+    /// [`SceneError::Part`] if a triangle refers to a missing vertex, a coordinate is not finite, or the mesh has no
+    /// triangles.
     pub fn from_triangles(corners: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, SceneError> {
         let mut normals = vec![Vec3::ZERO; corners.len()];
         for triangle in triangles {
@@ -56,14 +59,14 @@ impl Scene {
             motion: standing(Vec3::ZERO, Vec3::Z),
             path: Vec::new(),
         };
-        // The bounding sphere is that of the checked scene.
+        // Use the bounding sphere of the checked scene.
         let (centre, radius) = Self::new(parts.clone())?.bounding_sphere();
         parts.motion = standing(centre, centre + Vec3::Z * (f64::from(radius) * FIT_DISTANCE_RADII) as f32);
         Self::new(parts)
     }
 }
 
-/// Returns the motion of a head that stands and looks at a point.
+/// Returns the motion of a head that stands still at `eye` and looks at `target`.
 fn standing(target: Vec3, eye: Vec3) -> HeadMotion {
     let still = HeadPath::Still { eye, target };
     HeadMotion::new(still, Sway { seed: 1, scale: 0.0 }).expect("pxpl5-scene: no sway is in range")

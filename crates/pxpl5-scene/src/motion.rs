@@ -1,4 +1,4 @@
-//! Head motion: the pose of a head at any simulated time. The same seed gives the same motion on every host.
+//! Head motion in a scene: the pose of a head at any simulated time. The same seed gives the same motion on every host.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -9,25 +9,27 @@ use crate::error::{RangeError, require};
 use crate::sway::{self, Sway, Swing};
 use crate::trig;
 
-/// Greatest coordinate, distance or rate in a motion. Assumed: enough for any run, and no product overflows.
+/// Greatest coordinate, distance or rate in the numbers of a motion. Assumed: enough for any run, and no product
+/// overflows.
 const LIMIT: f64 = 1e9;
 
-/// The path of a head without sway. Lengths are metres, angles degrees, and coordinates are in the world.
+/// The path of a head, to which sway can be added. Lengths are in metres, angles in degrees, and coordinates in the
+/// world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum HeadPath {
-    /// The head stands at `eye` and looks at `target`.
+    /// The head stands still at `eye` and looks at `target`.
     Still {
         /// Position of the head in the world, metres.
         eye: Vec3,
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
     },
-    /// The head stands at `eye`, looks along -z at time 0 and turns left (about +y) at a constant rate.
+    /// The head stands at `eye` and turns to the left (about +y) at a constant rate. At time 0 it looks along -z.
     Pan {
         /// Position of the head in the world, metres.
         eye: Vec3,
-        /// Rate of the turn, degrees per second. A negative rate turns right.
+        /// Turning rate of the head, degrees per second. A negative rate turns right.
         deg_per_s: f64,
     },
     /// The head circles around `target` in a horizontal plane and looks at it. At time 0 the head is on the +z side.
@@ -38,17 +40,19 @@ pub enum HeadPath {
         distance: f64,
         /// Height of the circle above the target, metres.
         height: f64,
-        /// Rate of the circle, degrees per second. A positive rate moves towards +x first.
+        /// Angular rate on the circle, degrees per second. With a positive rate the head moves towards +x first.
         deg_per_s: f64,
     },
-    /// The head looks at `target` from the +z side. [`Sway`] makes it lean and walk to and fro around the target.
+    /// The head looks at `target` from the +z side. The added [`Sway`] lets it lean and walk to and fro around the
+    /// target.
     Look {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
         /// Mean distance from the target, metres.
         distance: f64,
     },
-    /// The head flies around `target` and looks at it, alternately near and far: five approaches in two laps.
+    /// The head flies around `target` and always looks at it. The distance alternates between near and far, with five
+    /// approaches in two laps.
     FlyThrough {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -61,7 +65,7 @@ pub enum HeadPath {
     },
 }
 
-/// A head's motion: a path with additional sway.
+/// The motion of a head: a path with added sway.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked", into = "Unchecked")]
 pub struct HeadMotion {
@@ -69,7 +73,7 @@ pub struct HeadMotion {
     sway: Sway,
 }
 
-/// A head motion whose numbers are not yet checked.
+/// The numbers of a head motion before they are checked.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -103,19 +107,19 @@ impl HeadMotion {
         Ok(Self { path, sway })
     }
 
-    /// Creates a motion that looks at a model with the published head speeds ([`HeadPath::Look`], sway of scale 1, seed
-    /// 1).
+    /// Creates the motion of a head that looks at a model with the published head speeds. The path is
+    /// [`HeadPath::Look`], with sway of scale 1 and seed 1.
     ///
-    /// The distance is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres). A model within `radius` of
-    /// `centre` then roughly fills the default view.
+    /// The distance from `centre` is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres). A model within
+    /// `radius` of `centre` then roughly fills the default view.
     #[must_use]
     pub fn looking_at(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 
-    /// Creates a motion that looks at a model from a distance at which both eyes always see all of it, with any seed.
-    /// The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
+    /// Creates the motion of a head that looks at a model. The distance is so large that both eyes always see the whole
+    /// model, with any seed. It is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
     #[must_use]
     pub fn always_visible(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
@@ -134,17 +138,17 @@ impl HeadMotion {
         &self.sway
     }
 
-    /// Returns the same motion with another seed.
+    /// Returns the same motion with another seed for its sway.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.sway.seed = seed;
         self
     }
 
-    /// Returns the pose at simulated time `time_ps`, picoseconds.
+    /// Returns the pose of the head at simulated time `time_ps`, in picoseconds.
     ///
-    /// The pose is computed in double precision with software trigonometry, and then rounded to single precision like
-    /// all coordinates of a scene. The time is exact to 2 ns after 200 days.
+    /// The pose is computed in double precision with software trigonometry. It is then rounded to single precision, as
+    /// are all coordinates of a scene. The time is exact to 2 ns after 200 days.
     #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;
@@ -186,11 +190,11 @@ impl HeadPath {
         }
     }
 
-    /// Returns the position of the head, and its orientation without the sway of the gaze.
+    /// Returns the position of the head, and the orientation towards its target. The sway of the gaze is not included.
     fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
         match *self {
             HeadPath::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
-            // A pan is the only path whose gaze has no target.
+            // A pan is the only path whose gaze has no target point.
             HeadPath::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
             HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;
@@ -210,23 +214,23 @@ impl HeadPath {
 }
 
 fn check_point(what: &'static str, point: Vec3) -> Result<(), RangeError> {
-    // The largest element of a vector ignores NaN, so NaN is tested separately.
+    // The maximum of a vector's elements ignores NaN, so NaN is tested separately.
     let reach = if point.is_nan() { f64::NAN } else { f64::from(point.abs().max_element()) };
     require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
 }
 
-/// Checks a distance or a duration.
+/// Checks that a distance or duration is above zero and within the limit.
 fn check_length(what: &'static str, length: f64) -> Result<(), RangeError> {
     require((1e-9..=LIMIT).contains(&length), what, "1e-9 to 1e9", length)
 }
 
-/// Checks a height or a rate.
+/// Checks that a height or rate, which may be negative, is within the limit.
 fn check_either_sign(what: &'static str, number: f64) -> Result<(), RangeError> {
     require(number.abs() <= LIMIT, what, "-1e9 to 1e9", number)
 }
 
-/// Returns the vector from the target to the head after `laps`. A lap has two and a half approaches, each from another
-/// side and height.
+/// Returns the vector from the target to the head after a number of laps. A lap has two and a half approaches to the
+/// target, each from another side and height.
 fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
     let middle = (farthest + nearest) / 2.0;
     let half = (farthest - nearest) / 2.0;
@@ -235,15 +239,15 @@ fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
     direction(360.0 * laps, elevation_deg) * distance
 }
 
-/// Returns the unit vector at `azimuth_deg` from +z towards +x, raised by `elevation_deg`.
+/// Returns a unit vector that is rotated by `azimuth_deg` from +z towards +x and then raised by `elevation_deg`.
 fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_a, cos_a) = trig::sin_cos_deg(azimuth_deg);
     let (sin_e, cos_e) = trig::sin_cos_deg(elevation_deg);
     DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// Returns the position and orientation of an upright head at `eye` that looks at `target`. If the two coincide, the
-/// head looks along -z. If the head looks straight up, its feet point towards +z.
+/// Returns the position and orientation of an upright head at `eye` that looks at `target`. If both positions are
+/// equal, the head looks along -z. If it looks straight up, its feet point towards +z.
 fn facing(eye: DVec3, target: DVec3) -> (DVec3, DQuat) {
     let back = (eye - target).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);

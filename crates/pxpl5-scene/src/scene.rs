@@ -1,4 +1,4 @@
-//! The display list: vertices, triangles, spheres, and the structures that edits can move.
+//! The display list of a scene: vertices, triangles, spheres, and the structures that the host can move.
 
 use std::ops::Range;
 
@@ -8,41 +8,41 @@ use crate::edit::{Edit, Hinge};
 use crate::error::SceneError;
 use crate::motion::HeadMotion;
 
-/// A corner shared by triangles: position, normal and colour in one.
+/// A corner of one or more triangles, with position, normal and colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// Position in the coordinates of the structure, metres.
+    /// Position in the coordinates of the vertex's structure, metres.
     pub position: Vec3,
     /// Unit normal that points outwards from the surface.
     pub normal: Vec3,
-    /// Diffuse red, green and blue, 8 bits each.
+    /// Diffuse colour: red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
 /// A sphere, which a renderer draws as one primitive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
-    /// Centre in the coordinates of the structure, metres.
+    /// Position of the centre in the coordinates of the sphere's structure, metres.
     pub centre: Vec3,
     /// Radius of the sphere, metres, above zero.
     pub radius: f32,
-    /// Diffuse red, green and blue, 8 bits each.
+    /// Diffuse colour: red, green and blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
-/// The frame to which a structure is fixed.
+/// The coordinate system to which a structure is fixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Frame {
     /// The room, through which the head moves.
     World,
-    /// The head. The structure is always at the same position of the view.
+    /// The head of the viewer. The structure always appears at the same position in the view.
     Head,
 }
 
-/// A named run of primitives with one model matrix.
+/// A part of a scene with a name and one model matrix: successive triangles and spheres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Name for display only. The code never depends on it.
+    /// Name of the structure for display. No result depends on the name.
     pub name: String,
     /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use them.
     pub vertices: Range<usize>,
@@ -50,30 +50,30 @@ pub struct Structure {
     pub triangles: Range<usize>,
     /// Range of the structure's spheres in [`Scene::spheres`].
     pub spheres: Range<usize>,
-    /// Frame to which the coordinates are fixed.
+    /// Coordinate system to which the structure is fixed: the room or the head.
     pub frame: Frame,
-    /// Scripted motion of the structure, or `None` for a structure that does not move by itself.
+    /// Motion of the structure as a function of time, or `None` for a structure that does not move by itself.
     pub hinge: Option<Hinge>,
-    /// True if triangles that face away from the eye are dropped. The corners of such a triangle run clockwise, seen
-    /// from the eye. This is correct for surfaces without holes that are seen from outside.
+    /// True if triangles that face away from the eye are not drawn. The corners of such a triangle run clockwise, seen
+    /// from the eye. Culling is correct for surfaces without holes that are seen from outside.
     pub culls_back_faces: bool,
 }
 
-/// The light of a scene: one directional light with ambient light.
+/// The lighting of a scene: one directional light and ambient light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lighting {
     /// Unit vector towards the light, world coordinates.
     pub towards_light: Vec3,
-    /// Fraction of the colour that is visible in shadow, 0 to 1.
+    /// Fraction of a surface's colour that ambient light makes visible, 0 to 1.
     pub ambient: f32,
-    /// Fraction of the colour that perpendicular light adds, 0 to 1.
+    /// Fraction of a surface's colour that the directional light adds at perpendicular incidence, 0 to 1.
     pub diffuse: f32,
-    /// Red, green and blue of pixels without a primitive.
+    /// Colour of pixels that no primitive covers: red, green and blue.
     pub background: [u8; 3],
 }
 
 impl Lighting {
-    /// Returns light from above and behind the viewer's right shoulder, with direction (2, 3, 6) / 7. Assumed, any.
+    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. Assumed, any.
     #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
@@ -85,30 +85,31 @@ impl Lighting {
     }
 }
 
-/// The parts of a scene before [`Scene::new`] checks them.
+/// The contents of a scene before [`Scene::new`] checks them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneParts {
-    /// Name of the scene, as reports show it.
+    /// Name of the scene, as it appears in reports.
     pub name: String,
     /// Vertices that the triangles share.
     pub vertices: Vec<Vertex>,
-    /// Indices of three vertices each, anticlockwise seen from outside.
+    /// Triangles, each as the indices of three vertices, anticlockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in the order of drawing, after the triangles.
     pub spheres: Vec<Sphere>,
-    /// Structures in order, which together contain all vertices, triangles and spheres. An empty list stands for a
-    /// single structure.
+    /// Structures of the scene. In order, they contain all vertices, triangles and spheres. An empty list stands for a
+    /// single structure with everything.
     pub structures: Vec<Structure>,
-    /// Light and background colour.
+    /// Lighting and background colour of the scene.
     pub lighting: Lighting,
     /// Motion of a head that looks at this scene.
     pub motion: HeadMotion,
-    /// Corners of a closed path for walking through the scene, as eye positions in metres. The list is empty if the
-    /// scene has no path.
+    /// Corners of a closed path on which a head can walk through the scene, as eye positions in metres. The list is
+    /// empty if the scene has no path.
     pub path: Vec<Vec3>,
 }
 
-/// A checked scene: every index is in range, every number finite, every normal of unit length, every radius above zero.
+/// A scene with checked contents: every index is in range, every number is finite, every normal has unit length, and
+/// every radius is above zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     parts: SceneParts,
@@ -116,11 +117,11 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Creates a scene after checking the parts.
+    /// Checks the contents and creates a scene of them.
     ///
     /// # Errors
     ///
-    /// [`SceneError::Part`] names the first part that breaks a rule.
+    /// [`SceneError::Part`] names the first part of the scene that breaks a rule.
     pub fn new(mut parts: SceneParts) -> Result<Self, SceneError> {
         if parts.structures.is_empty() {
             parts.structures.push(structure_of_all(&parts));
@@ -129,21 +130,21 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Replaces the warnings about the file from which the scene was read.
+    /// Returns the scene with these warnings about its file instead of its present ones.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;
         self
     }
 
-    /// Returns warnings of a reader about content that its writer may have meant otherwise, one sentence each. The list
-    /// is empty for scenes without a file.
+    /// Returns warnings about the file from which the scene was read, one sentence each. They concern content that may
+    /// have been misinterpreted. The list is empty for a scene without a file.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Returns the name of the scene, as reports show it.
+    /// Returns the name of the scene, as it appears in reports.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.parts.name
@@ -155,7 +156,7 @@ impl Scene {
         &self.parts.vertices
     }
 
-    /// Returns all triangles as indices into [`Self::vertices`], anticlockwise seen from outside.
+    /// Returns all triangles, each as three indices into [`Self::vertices`], anticlockwise seen from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.parts.triangles
@@ -167,47 +168,47 @@ impl Scene {
         &self.parts.spheres
     }
 
-    /// Returns the structures, at least one. In order they contain all primitives.
+    /// Returns the structures of the scene, at least one. In order, they contain all triangles and spheres.
     #[must_use]
     pub fn structures(&self) -> &[Structure] {
         &self.parts.structures
     }
 
-    /// Returns the light and the background colour.
+    /// Returns the lighting and the background colour of the scene.
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
         &self.parts.lighting
     }
 
-    /// Returns the motion of a head that looks at this scene. The model stays in view for runs of any length.
+    /// Returns the motion of a head that looks at this scene. The model stays in view during runs of any length.
     #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion
     }
 
-    /// Returns the corners of a closed path for walking through the scene, as eye positions in metres. The list is
-    /// empty if the scene has no path.
+    /// Returns the corners of a closed path on which a head can walk through the scene, as eye positions in metres. The
+    /// list is empty if the scene has no path.
     #[must_use]
     pub fn path(&self) -> &[Vec3] {
         &self.parts.path
     }
 
-    /// Returns the same scene with back-face culling in all structures. This is correct for surfaces without holes that
-    /// are seen from outside. The inside of other surfaces becomes invisible.
+    /// Returns the same scene with back-face culling in all structures. Culling is correct for surfaces without holes
+    /// that are seen from outside. With other surfaces, their inner sides become invisible.
     #[must_use]
     pub fn culled(mut self) -> Self {
         self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);
         self
     }
 
-    /// Returns the parts of the scene, which can be changed and checked again.
+    /// Returns the contents of the scene. The caller can change them and check them again with [`Scene::new`].
     #[must_use]
     pub fn into_parts(self) -> SceneParts {
         self.parts
     }
 
-    /// Returns the edits of a frame that begins at simulated time `time_ps` (picoseconds): one for each structure with
-    /// a script.
+    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). There is
+    /// one for each structure with a motion of its own.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
@@ -219,9 +220,10 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy with `edits` applied to positions and normals, for code without model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. It serves
+    /// code that has no model matrices.
     ///
-    /// The matrices may only rotate, move and scale uniformly. Edits of structures that the scene does not have are
+    /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.
     #[must_use]
     pub fn posed(&self, edits: &[Edit]) -> Scene {
@@ -234,7 +236,7 @@ impl Scene {
         posed
     }
 
-    /// Returns the centre of the box around everything, and the distance from the centre to the farthest point, metres.
+    /// Returns the centre of the scene's bounding box, and the distance from this centre to the farthest point, metres.
     #[must_use]
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         let points = self.vertices().iter().map(|v| (v.position.as_dvec3(), 0.0));
@@ -245,8 +247,8 @@ impl Scene {
     }
 }
 
-/// Returns the centre of the box around the balls (centre, radius), and the distance to the farthest point of a ball.
-/// Without balls both are zero.
+/// Returns the centre of the bounding box around balls (centre, radius), and the distance from this centre to the
+/// farthest point of a ball. Without balls both are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = balls
@@ -260,7 +262,7 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
     (middle, reaches.fold(0.0, f64::max))
 }
 
-/// Returns the length of a vector whose square may leave the range of f64.
+/// Returns the length of a vector. The square of the length may be too large or too small for f64.
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
@@ -286,7 +288,7 @@ impl SceneParts {
             vertex.position = model.transform_point3(vertex.position.as_dvec3()).as_vec3();
             vertex.normal = normal.normalize_or(DVec3::Y).as_vec3();
         }
-        // The scale is uniform, so one axis gives the scale of the radii.
+        // The matrix scales uniformly, so the scale of one axis is also that of the radii.
         let scale = model.x_axis.truncate().length();
         for sphere in &mut self.spheres[structure.spheres.clone()] {
             sphere.centre = model.transform_point3(sphere.centre.as_dvec3()).as_vec3();
@@ -346,7 +348,7 @@ impl SceneParts {
     }
 
     fn check_structures(&self) -> Result<(), SceneError> {
-        // In order, the structures must divide each of the three lists without a gap.
+        // Taken in order, the structures must divide each of the three lists without gaps.
         let mut ends = [0; 3];
         for (i, s) in self.structures.iter().enumerate() {
             for (range, end) in [&s.vertices, &s.triangles, &s.spheres].into_iter().zip(&mut ends) {

@@ -1,4 +1,4 @@
-//! Random, band-limited sway of a head, determined by a seed.
+//! Random, band-limited sway of a head. A seed determines the sway.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use tracking::random;
 
 use crate::trig;
 
-/// Unconscious and conscious head movement in addition to a path: a sum of sines of fixed frequencies, all below
+/// Random head movement that is added to a path. It is a sum of sines of fixed frequencies below
 /// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
 ///
 /// At scale 1 on [`crate::HeadPath::Look`], three statistics agree with recorded traces of headset use. The mean
@@ -14,38 +14,39 @@ use crate::trig;
 /// [`crate::config::MAX_HEAD_SPEED_DEG_PER_S`]. At least 95 % of the energy of yaw lies below 0.14 Hz. Unlike recorded
 /// speeds, these speeds have no long tail, because a sum of sines is nearly Gaussian.
 ///
-/// On [`crate::HeadPath::Look`] the head moves around the target and the gaze wanders. On all other paths only the gaze
-/// wanders, by at most 11 degrees at scale 1.
+/// On [`crate::HeadPath::Look`] the head moves around the target, and the direction of the gaze varies. On all other
+/// paths only the direction of the gaze varies, by at most 11 degrees at scale 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sway {
     /// Seed from which the phases of the sines are drawn.
     pub seed: u64,
-    /// Factor of all amplitudes, 0 to 10. With 0 there is no sway, and 1 gives the published speeds.
+    /// Factor of all amplitudes, 0 to 10. A factor of 0 turns the sway off, and a factor of 1 gives the published head
+    /// speeds.
     pub scale: f64,
 }
 
-/// Frequency in hertz and amplitude of a sine.
+/// Frequency (Hz) and amplitude of one sine of the sway.
 type Sine = (f64, f64);
 
 // Amplitudes and frequencies are assumed, within the published band and energy. The frequencies have no common period.
 // The root mean square angular speed, sqrt(sum (2 pi f A)^2 / 2) over all but the distance, is 44 degrees per second.
 // For nearly Gaussian speeds in three unequal directions the mean is about nine tenths of this: 40.
 
-/// Angle around the target, degrees.
+/// Sines of the head's angle around the target, degrees.
 const AZIMUTH: [Sine; 5] = [(0.041, 41.0), (0.067, 40.0), (0.097, 38.0), (0.131, 35.0), (0.43, 5.0)];
-/// Angle above the target, degrees.
+/// Sines of the head's angle above the target, degrees.
 const ELEVATION: [Sine; 3] = [(0.053, 12.0), (0.113, 9.0), (0.47, 4.0)];
-/// Change of the distance, as a fraction.
+/// Sines of the head's distance from the target, as a fraction of the mean distance.
 const DISTANCE: [Sine; 2] = [(0.059, 0.06), (0.149, 0.04)];
-/// Angle of the gaze to the left of the target, degrees.
+/// Sines of the angle of the gaze to the left of the target, degrees.
 const GAZE_YAW: [Sine; 3] = [(0.37, 3.4), (0.89, 2.9), (1.61, 2.2)];
-/// Angle of the gaze above the target, degrees.
+/// Sines of the angle of the gaze above the target, degrees.
 const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
-/// Tilt of the head to its left, degrees.
+/// Sines of the head's tilt to its left, degrees.
 const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
-/// The sway at one instant.
+/// The angles and the relative distance of the sway at one instant.
 pub(crate) struct Swing {
     pub(crate) azimuth_deg: f64,
     pub(crate) elevation_deg: f64,
@@ -56,7 +57,7 @@ pub(crate) struct Swing {
 }
 
 impl Sway {
-    /// Returns a sway with amplitudes of 0: the head stays exactly on its path.
+    /// Returns a sway whose amplitudes are 0, so that the head stays exactly on its path.
     #[must_use]
     pub fn none() -> Self {
         Self { seed: 0, scale: 0.0 }
@@ -66,7 +67,8 @@ impl Sway {
         let mut sums = SumsOfSines { sway: self, seconds, phases_drawn: 0 };
         Swing {
             azimuth_deg: sums.next(&AZIMUTH),
-            // Limited to stay away from the pole at any scale, because upright has no meaning there.
+            // The limit keeps the head away from the point above the target at any scale, because an upright head has
+            // no unique orientation there.
             elevation_deg: (10.0 + sums.next(&ELEVATION)).clamp(-80.0, 80.0),
             distance_factor: (1.0 + sums.next(&DISTANCE)).max(0.1),
             yaw_deg: sums.next(&GAZE_YAW),
@@ -76,7 +78,7 @@ impl Sway {
     }
 }
 
-/// A generator of sums of sines. Each sine gets the next phase of the seed.
+/// A generator of sums of sines. Each sine gets the next phase drawn from the seed.
 struct SumsOfSines<'a> {
     sway: &'a Sway,
     seconds: f64,
@@ -101,7 +103,7 @@ impl SumsOfSines<'_> {
 }
 
 impl Swing {
-    /// Returns the rotation of the gaze relative to the path's gaze.
+    /// Returns the rotation that the sway adds to the direction of the gaze.
     pub(crate) fn gaze(&self) -> DQuat {
         turn_about(DVec3::Y, self.yaw_deg) * turn_about(DVec3::X, self.pitch_deg) * turn_about(DVec3::Z, self.roll_deg)
     }

@@ -1,4 +1,4 @@
-//! Trigonometry in software, in double precision, with the same bits on every host.
+//! Trigonometric functions in software and double precision. Their results have the same bits on every host.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,7 +10,7 @@ pub(crate) fn cos_turns(turns: f64) -> f64 {
     libm::cos(TAU * (turns - libm::floor(turns)))
 }
 
-/// Returns sine and cosine of an angle in degrees.
+/// Returns the sine and the cosine of an angle in degrees.
 pub(crate) fn sin_cos_deg(degrees: f64) -> (f64, f64) {
     (libm::sin(degrees * PI / 180.0), libm::cos(degrees * PI / 180.0))
 }

@@ -1,4 +1,4 @@
-//! The head-mounted display, which converts a head's pose into the matrices of its two eyes.
+//! The head-mounted display. It converts the pose of a head into the matrices of its two eyes.
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use serde::{Deserialize, Serialize};
@@ -8,25 +8,27 @@ use crate::error::{RangeError, require};
 use crate::scene::Frame;
 use crate::trig;
 
-/// An eye of the viewer. In pairs, the left eye comes first.
+/// The eye for which a picture is drawn. In pairs of pictures, the left eye comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum EyePoint {
     /// The left eye, half the eye separation to the left of the head's position.
     Left,
     /// The right eye, half the eye separation to the right of the head's position.
     Right,
-    /// The point between the eyes, for a single picture.
+    /// The point between the two eyes, for a display with a single picture.
     Centre,
 }
 
-/// The transformations of one eye's picture.
+/// The matrices with which one eye's picture is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Eye that sees the picture.
+    /// Eye for which the picture is drawn.
     pub eye: EyePoint,
-    /// Rigid matrix from world to eye coordinates: right-handed, +y up, looking along -z.
+    /// Matrix from world to eye coordinates, which only rotates and moves. Eye coordinates are right-handed with +y up,
+    /// and the eye looks along -z.
     pub world_to_eye: Mat4,
-    /// Rigid matrix from head to eye coordinates, for structures fixed to the head.
+    /// Matrix from head to eye coordinates, which only rotates and moves. It is used for structures that are fixed to
+    /// the head.
     pub head_to_eye: Mat4,
     /// Matrix from eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w. The depth z/w grows
     /// from 0 at the near plane to 1 at the far plane.
@@ -34,7 +36,7 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the matrix from the coordinates of a frame to eye coordinates.
+    /// Returns the matrix to eye coordinates from the coordinates of `frame`, the world or the head.
     #[must_use]
     pub fn to_eye(&self, frame: Frame) -> Mat4 {
         match frame {
@@ -52,13 +54,13 @@ pub struct HmdConfig {
     pub eye_separation_m: f64,
     /// Angle between the left and the right edge of a picture, degrees.
     pub horizontal_fov_deg: f64,
-    /// Width of a picture in square pixels.
+    /// Number of pixels across a picture. Pixels are square.
     pub width_px: u32,
-    /// Height of a picture in square pixels.
+    /// Number of pixels from the top to the bottom of a picture. Pixels are square.
     pub height_px: u32,
-    /// Distance from the eye to the near plane, metres.
+    /// Distance from the eye to the near plane, metres. Nothing nearer is drawn.
     pub near_m: f64,
-    /// Distance from the eye to the far plane, metres.
+    /// Distance from the eye to the far plane, metres. Nothing beyond it is drawn.
     pub far_m: f64,
 }
 
@@ -84,7 +86,8 @@ impl HmdConfig {
     }
 }
 
-/// A head-mounted display with checked numbers. The optical axes are parallel, and each picture is centred on its axis.
+/// A head-mounted display with checked numbers. The optical axes of both eyes are parallel, and each picture is centred
+/// on its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hmd {
     config: HmdConfig,
@@ -92,11 +95,11 @@ pub struct Hmd {
 }
 
 impl Hmd {
-    /// Creates a display after checking its numbers.
+    /// Checks the numbers of a display and creates it.
     ///
     /// # Errors
     ///
-    /// [`RangeError`] names the first number out of its range.
+    /// [`RangeError`] names the first number that is out of its range.
     pub fn new(config: HmdConfig) -> Result<Self, RangeError> {
         let c = &config;
         let separation = c.eye_separation_m;
@@ -119,26 +122,26 @@ impl Hmd {
         &self.config
     }
 
-    /// Returns the views of the left and the right eye.
+    /// Returns the matrices of the left and the right eye for this pose of the head.
     #[must_use]
     pub fn stereo(&self, head: &Pose) -> [View; 2] {
         [EyePoint::Left, EyePoint::Right].map(|eye| self.view(eye, head))
     }
 
-    /// Returns one view from the point between the eyes.
+    /// Returns the matrices of a single picture, seen from the point between the eyes, for this pose of the head.
     #[must_use]
     pub fn mono(&self, head: &Pose) -> View {
         self.view(EyePoint::Centre, head)
     }
 
-    /// Returns the distance from the eye to the picture in pixels, which is the number of pixels for a tangent of 1.
+    /// Returns the distance from the eye to the picture in pixels. An angle with a tangent of 1 covers as many pixels.
     #[must_use]
     pub fn focal_length_px(&self) -> f64 {
         f64::from(self.config.width_px) / 2.0 / half_width(&self.config)
     }
 
-    /// Returns the disparity of a point `depth_m` (metres) ahead in pixels: eye separation x focal length / depth. The
-    /// point is this far to the right in the left picture, relative to the right picture.
+    /// Returns the disparity, in pixels, of a point `depth_m` metres ahead: eye separation x focal length / depth. In
+    /// the left picture the point is this far to the right of its position in the right picture.
     #[must_use]
     pub fn disparity_px(&self, depth_m: f64) -> f64 {
         self.config.eye_separation_m * self.focal_length_px() / depth_m
@@ -151,7 +154,7 @@ impl Hmd {
             EyePoint::Right => half,
             EyePoint::Centre => 0.0,
         };
-        // Optical axes are parallel, so an eye is only shifted.
+        // The optical axes are parallel, so each eye is only shifted.
         let head_to_eye = DMat4::from_translation(DVec3::new(-right_of_head, 0.0, 0.0));
         View {
             eye,
@@ -162,14 +165,14 @@ impl Hmd {
     }
 }
 
-/// Returns the tangent of half the horizontal field of view.
+/// Returns the tangent of half the horizontal angle of view.
 fn half_width(config: &HmdConfig) -> f64 {
     let (sin, cos) = trig::sin_cos_deg(config.horizontal_fov_deg / 2.0);
     sin / cos
 }
 
 fn projection(config: &HmdConfig) -> Mat4 {
-    // Half sizes of the picture at a distance of 1.
+    // Half the width and half the height of the picture at a distance of 1.
     let half_width = half_width(config);
     let half_height = half_width * f64::from(config.height_px) / f64::from(config.width_px);
     let near = config.near_m;
@@ -183,7 +186,8 @@ fn projection(config: &HmdConfig) -> Mat4 {
     .as_mat4()
 }
 
-/// Returns the inverse of the head's pose in double precision. An orientation of length zero counts as the identity.
+/// Returns the matrix from world to head coordinates, the inverse of the head's pose, in double precision. An
+/// orientation of length zero counts as the identity.
 fn world_to_head(head: &Pose) -> DMat4 {
     let q = head.orientation;
     let length = q.length();

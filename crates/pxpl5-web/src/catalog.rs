@@ -1,8 +1,9 @@
-//! Lists of everything that a visitor of the page can choose.
+//! Lists of the pipelines, scenes, displays and motions that a visitor of the page can choose.
 
 use serde_json::{Value, json};
 
-/// Motions of the head that need no recording, with descriptions. The empty name is the scene's own motion.
+/// Motions of the head that need no recorded file, each with a description. The empty name stands for the motion that
+/// belongs to the scene.
 const MOTIONS: [(&str, &str); 6] = [
     ("", "the scene's own motion, followed without delay"),
     ("still", "a head that stands still"),
@@ -12,7 +13,7 @@ const MOTIONS: [(&str, &str); 6] = [
     ("live.csv", "your own: drag across a picture while the machine runs"),
 ];
 
-/// Returns the pipelines, scenes, displays and motions as JSON.
+/// Returns the selectable pipelines, scenes, displays and motions as JSON.
 pub(crate) fn catalog() -> Value {
     let registry = pxpl5_lab::registry();
     let pipelines = registry.pipelines().iter();
@@ -27,12 +28,12 @@ pub(crate) fn catalog() -> Value {
     })
 }
 
-/// Splits a list in words into names, such as `optical, fastrak or ideal`.
+/// Splits a list in plain English, such as `optical, fastrak or ideal`, into its names.
 fn names(list: &str) -> Vec<&str> {
     list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "or").collect()
 }
 
-/// Returns a scene's name with an example number in place of `N`.
+/// Returns a scene's name with an example number of triangles in place of `N`.
 fn example(name: &str) -> String {
     let (family, count) = name.split_once(':').unwrap_or((name, ""));
     match count {

@@ -1,16 +1,17 @@
-//! View of the i860 of a board that runs code: registers, and the instructions around the end of its last call.
+//! Text with the state of an i860 processor on one board: its registers, and the instructions around the end of its
+//! last call.
 
 use i860::disassemble;
 use pxpl5_gp::Processor;
 use pxpl5_machine::Board;
 use pxpl5_run::Stepper;
 
-/// Number of instructions that are shown before the program counter.
+/// Number of instructions before the program counter that the text shows.
 const BEFORE: u32 = 8;
 const AFTER: u32 = 8;
 
-/// Returns lines with registers and code. A board without a processor has no lines. Only the cycle level has
-/// processors.
+/// Returns lines of text with the registers and the code of a board's processor. The list is empty for a board without
+/// a processor. Only the cycle level of modelling has processors.
 pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
     stepper.machine().board(board).and_then(|gp| gp.with_processor(of)).unwrap_or_default()
 }
@@ -25,10 +26,10 @@ fn of(processor: &Processor) -> Vec<String> {
         format!("r{:<2} {}", 8 * row, words.join(" "))
     }));
     let Some(program) = processor.program() else { return lines };
-    // A call ends at its return address, which lies outside of the code. Then the begin of the code is shown.
+    // A call ends at its return address, which lies outside the code. In this case, the beginning of the code is shown.
     let end = program.base + program.bytes.len() as u32;
     let at = if (program.base..end).contains(&state.pc) { state.pc & !3 } else { program.base };
-    // Show the instructions around this address, with labels and a mark.
+    // Show the instructions around this address with their labels, and mark the address.
     let begin = at.saturating_sub(4 * BEFORE).max(program.base);
     for address in (begin..end.min(at + 4 * AFTER)).step_by(4) {
         let Ok(words) = processor.read(address, 1) else { break };

@@ -1,5 +1,5 @@
-//! Facts for the block diagram and the stories of the page: stages, messages, regions on their way, and the age of the
-//! shown picture.
+//! Data for the block diagram and the guided tours of the page: stages of processors, messages, regions that are being
+//! copied, and the age of the shown picture.
 
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::Board;
@@ -8,8 +8,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, Lines};
 use serde_json::{Value, json};
 
-/// Returns the name of the stage in which a processor is, or `None` between two stages. The name is that of the papers,
-/// in lower case.
+/// Returns the name of the stage that a board's processor executes now, in the papers' words and in lower case. Returns
+/// `None` between two stages.
 pub(crate) fn stage(stepper: &Stepper, board: Board) -> Option<&'static str> {
     let ports = stepper.record().ports();
     let marks = &stepper.record().observation().marks;
@@ -29,12 +29,12 @@ const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns messages that began after an instant, at most `most` of them. If there are more, every n-th is returned.
-/// Messages that are still on a channel are included.
+/// Returns the messages that began after an instant, at most `most` of them. If there are more, only every n-th message
+/// is returned. Messages that still occupy a channel are included.
 pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     let record = stepper.record();
     let name = |node| record.ports().board(node).to_string();
-    // A channel is granted before its first word arrives. The begin identifies a message only within one list.
+    // A channel is granted before the first word arrives. The start time identifies a message only within one list.
     let done = record.observation().traffic.as_deref().into_iter().flat_map(|traffic| &traffic.transfers);
     let mut all: Vec<(Time, String, String, u32)> = done
         .filter(|transfer| transfer.begin > after && transfer.begin <= stepper.now())
@@ -46,8 +46,9 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     some.map(|(begin, from, to, words)| json!({"begin_ps": begin.0, "from": from, "to": to, "words": words})).collect()
 }
 
-/// Returns the regions that renderers are sending to displays: the renderer, the display, and the rectangle in pixels.
-/// `lines` is `[0, 1]` for all lines of the frame, otherwise the first line and the step of a field's lines.
+/// Returns the regions that renderers are copying to displays. Each has the renderer, the display and a rectangle in
+/// pixels. `lines` is `[0, 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line and
+/// the distance of the lines of one field.
 pub(crate) fn regions(stepper: &Stepper) -> Value {
     let record = stepper.record();
     let copying = (0..record.renderers().len()).filter_map(|number| {
@@ -75,15 +76,15 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
     copying.collect()
 }
 
-/// Returns the age of the shown picture in milliseconds: the time since its pose was sampled. `null` before the first
-/// picture, and for a pipeline whose picture has no single sample.
+/// Returns the age of the shown picture in milliseconds: the time since its head pose was sampled. The result is `null`
+/// before the first picture. It is also `null` for a pipeline whose picture combines several samples.
 ///
-/// A picture in the field that the beam draws now is not evaluated yet. It counts as shown if it is complete, or if the
-/// picture before it was shown and its last regions may still arrive ahead of the beam.
+/// The field that the beam draws now is not yet evaluated. A picture in this field counts as shown if it is complete.
+/// It also counts if the previous picture was shown, and its last regions can still arrive ahead of the beam.
 pub(crate) fn age(stepper: &Stepper) -> Value {
     let (now, record) = (stepper.now(), stepper.record());
     let field = stepper.period();
-    // Evaluate the present field as if it were over.
+    // Evaluate the present field as if it were finished.
     let mut pictures = stepper.experiment().pipeline().pictures(record, record.tick(field.next()));
     pictures.retain(|times| times.shown_at <= now);
     let in_progress = |times: &PictureTimes| times.copied_at.is_none() && times.shown_at >= record.tick(field);
@@ -107,7 +108,8 @@ mod tests {
         Session::new(&settings, &Files::default()).expect("known settings")
     }
 
-    /// TR94: the GPs TRANSFORM, then the renderers get commands, then they send regions to the frame buffers.
+    /// TR94: first the graphics processors execute TRANSFORM, then renderers get commands, then renderers copy regions
+    /// to the frame buffers.
     #[test]
     fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
         let mut session = session("rendering-control");
@@ -163,8 +165,8 @@ mod tests {
         assert!(seen > 100, "{seen}");
     }
 
-    /// TR94: Slats shows the pose of one field ago. So its picture is one field old at the retrace, and then grows older
-    /// until the next one.
+    /// TR94: Slats shows a picture for the pose of one field ago. The picture is thus one field old at the retrace, and
+    /// its age grows until the next retrace.
     #[test]
     fn under_slats_a_picture_is_one_field_old_when_it_is_shown() {
         let mut session = session("slats");

@@ -1,10 +1,10 @@
-//! Files that a visitor has added to the page.
+//! Files that a visitor of the page has added.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// Contents of the files that settings may name: models (PLY, OBJ, PDB) and recordings of a head.
+/// Names and contents of files for an experiment: models (PLY, OBJ, PDB) and recorded head motions.
 #[wasm_bindgen]
 #[derive(Debug, Default)]
 pub struct Files(pub(crate) BTreeMap<String, Arc<[u8]>>);
@@ -18,7 +18,7 @@ impl Files {
         Self::default()
     }
 
-    /// Adds a file, or replaces the file of the same name.
+    /// Adds a file. A file with the same name is replaced.
     pub fn add(&mut self, name: &str, contents: &[u8]) {
         self.0.insert(name.to_owned(), contents.into());
     }

@@ -1,16 +1,16 @@
-//! The terms of the page, taken from docs/glossary.md.
+//! The terms that the page explains, taken from docs/glossary.md.
 
 use serde_json::{Map, Value};
 
 const TEXT: &str = include_str!("../../../docs/glossary.md");
 
-/// Returns all terms with their sentences as JSON. A term is a line `- **term**: sentence` of the document.
+/// Returns all terms with their explanations as JSON. The document has each term on a line `- **term**: sentence`.
 pub(crate) fn glossary() -> Value {
     let terms = TEXT.lines().filter_map(|line| line.strip_prefix("- **")?.split_once("**: "));
     Value::Object(terms.map(|(term, sentence)| (term.to_owned(), plain(sentence).into())).collect::<Map<_, _>>())
 }
 
-/// Returns a sentence without the marks of Markdown.
+/// Returns a sentence without Markdown formatting.
 fn plain(sentence: &str) -> String {
     sentence.replace(['`', '*'], "")
 }

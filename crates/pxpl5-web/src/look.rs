@@ -1,4 +1,4 @@
-//! State of the machine as JSON and SVG for the page.
+//! The state of the machine as JSON and SVG, as the page needs it.
 
 use crate::code;
 use crate::diagram;
@@ -8,7 +8,7 @@ use pxpl5_run::{LATENCY_PARTS, Stepper};
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
-/// Returns the state of the run: time, failure, hashes and surfaces.
+/// Returns the state of the run as JSON: time, failure, hashes and surfaces.
 pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     let record = stepper.record();
     let surfaces = record
@@ -30,7 +30,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// Returns the message on each channel of the ring, or null for a free channel.
+/// Returns the message on each channel of the ring as JSON, with null for a free channel.
 pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();
@@ -43,7 +43,7 @@ pub(crate) fn channels(stepper: &Stepper) -> Value {
     all.map(|number| channel(number).unwrap_or(Value::Null)).collect()
 }
 
-/// Returns an object for each board.
+/// Returns a JSON object with the present state of each board.
 pub(crate) fn boards(stepper: &Stepper) -> Value {
     stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
 }
@@ -51,7 +51,7 @@ pub(crate) fn boards(stepper: &Stepper) -> Value {
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     let name = board.to_string();
     match board {
-        // A renderer works while commands wait in its FIFO or a region is being copied.
+        // A renderer is busy while commands wait in its FIFO or a region is being copied.
         Board::Renderer(number) => {
             let look = stepper.renderer(number);
             let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
@@ -71,7 +71,8 @@ fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     }
 }
 
-/// Returns all facts about one board, one a line. Returns `None` if the machine does not have the board.
+/// Returns the state of one board as lines of text, one fact per line. Returns `None` if the machine does not have this
+/// board.
 pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     if board == Board::Ring {
         return Some(vec![format!("occupied channels: {}", stepper.channels().len())]);
@@ -86,8 +87,8 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     Some(lines)
 }
 
-/// Returns the fields of a pixel's memory, one a line. Returns `None` for an invalid pixel, or before the first
-/// command.
+/// Returns the fields in a renderer's memory for one pixel, one per line. Returns `None` for a pixel that does not
+/// exist, or before the renderer's first command.
 pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Option<Vec<String>> {
     let fields = stepper.pixel_fields(renderer, x, y)?.into_iter();
     let lines = fields.map(|field| {
@@ -98,7 +99,7 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
     Some(lines.collect())
 }
 
-/// Returns the last periods as a timeline in SVG.
+/// Returns a timeline of the last `fields` display periods as SVG.
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     let run = stepper.so_far();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
@@ -111,7 +112,7 @@ pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     timeline::drawing(&run, &options)
 }
 
-/// Returns the latency parts of the last complete pictures in milliseconds, the newest last.
+/// Returns the parts of the latency of the last complete pictures in milliseconds, the newest picture last.
 pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
     let parts = LATENCY_PARTS.iter();
     let pictures = stepper.so_far().last_latencies(most);

@@ -21,17 +21,19 @@ const fn opaque([red, green, blue]: [u8; 3]) -> [u8; 4] {
     [red, green, blue, u8::MAX]
 }
 
-/// Difference between the seen picture and the ideal one: a heat map of the largest difference of any colour, and sums.
+/// The difference between the seen and the ideal picture: a heat map and sums. For each pixel, the largest difference
+/// of any colour counts.
 pub(crate) struct Difference {
     pub(crate) heat: Vec<u8>,
     pixels: usize,
     differing: usize,
-    /// Sum of the largest differences of all pixels, in steps of 1/255.
+    /// Sum over all pixels of the largest difference of any colour, in units of 1/255 of full brightness.
     sum: u64,
 }
 
 impl Difference {
-    /// Computes the difference for a surface. Returns `None` if either picture is not available.
+    /// Computes the difference between the seen and the ideal picture of a surface. Returns `None` if either picture is
+    /// not available.
     pub(crate) fn of(stepper: &Stepper, surface: SurfaceId) -> Option<Self> {
         let seen = stepper.seen(surface)?;
         let ideal = stepper.ideal_picture(surface)?;
@@ -46,7 +48,8 @@ impl Difference {
         Some(difference)
     }
 
-    /// Returns the share of pixels that differ and the mean of all pixels' largest differences, both in per cent.
+    /// Returns the fraction of pixels that differ, and the mean over all pixels of the largest difference of any
+    /// colour, both in per cent.
     pub(crate) fn numbers(&self) -> Value {
         let pixels = self.pixels.max(1) as f64;
         json!({
@@ -56,14 +59,15 @@ impl Difference {
     }
 }
 
-/// Returns the heat colour of a difference: black for 0, then red, yellow and white.
+/// Returns the colour of a difference in the heat map: black for 0, then red, yellow and white as the difference grows.
 fn heat(difference: u8) -> [u8; 3] {
     let rising = |from: u16| (u16::from(difference).saturating_sub(from) * 3).min(255) as u8;
     [rising(0), rising(85), rising(170)]
 }
 
-/// Returns the 128 x 128 pixels of a renderer, after all commands that have started. Pixels that the last started
-/// command has left enabled are green, and the others have their colours. Empty before the first command.
+/// Returns the 128 x 128 pixels of a renderer, after all commands that have started. A pixel is green if the last of
+/// these commands has left it enabled. Other pixels have their own colours. The result is empty before the first
+/// command.
 pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
     let Some(array) = stepper.array(number) else { return Vec::new() };
     let colours = array.read_colour(REGION_SIZE, REGION_SIZE);
@@ -78,14 +82,14 @@ pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
         .collect()
 }
 
-/// Colour of an enabled pixel.
+/// Colour in which an enabled pixel is shown.
 const ENABLED: [u8; 3] = [79, 209, 165];
 
-/// Side of a face in the picture of six faces, in pixels.
+/// Number of pixels on each side of a cube face in the picture of all six faces.
 pub(crate) const FACE_SIDE: u32 = 128;
 
-/// Column and row of each face in a cross of 4 x 3 faces. The middle row shows left, ahead, right and behind. Above and
-/// below lie over and under ahead.
+/// Column and row of each face in a cross of 4 x 3 faces. The middle row shows the faces left, ahead, right and behind.
+/// The faces above and below the viewer adjoin the face ahead.
 const CROSS: [(CubeFace, u32, u32); 6] = [
     (CubeFace::PosY, 1, 0),
     (CubeFace::NegX, 0, 1),
@@ -95,15 +99,15 @@ const CROSS: [(CubeFace, u32, u32); 6] = [
     (CubeFace::NegY, 1, 2),
 ];
 
-/// Returns the number of display memories of an eye. The number is 0 for a display without address recalculation.
+/// Returns the number of display memories for each eye. The number is 0 for a display without address recalculation.
 pub(crate) fn memories(stepper: &Stepper) -> usize {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>();
     display.map_or(0, |display| display.memories(Eye::Left).len())
 }
 
-/// Returns the six faces that a display memory shows to an eye now, as a cross. Each face has [`FACE_SIDE`] pixels a
-/// side. Without a number, the memories are joined: each texel is the nearest one of all memories. Returns `None` for a
-/// memory that does not exist.
+/// Returns the six cube faces that a display memory shows to an eye now, arranged as a cross. Each side of a face has
+/// [`FACE_SIDE`] pixels. Without a memory's index all memories are combined: each texel is the nearest one of all.
+/// Returns `None` for a memory that does not exist.
 pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
     let all = display.memories(eye);
@@ -114,7 +118,7 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Optio
     let some: Vec<_> = some.iter().map(DisplayMemory::shown_faces).collect();
     let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
     for (face, column, row) in CROSS {
-        // Sample each face at the resolution of the cross.
+        // Sample each face at the resolution of the picture.
         for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
             let texels = some.iter().filter_map(|faces| {
                 let step = faces.texels() / FACE_SIDE;
@@ -128,15 +132,16 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Optio
     Some(rgba(&cross))
 }
 
-/// Colour of outlines, which differs from those of the built-in scenes.
+/// Colour of outlines, which no built-in scene uses.
 const OUTLINE: [u8; 3] = [255, 196, 61];
 
-/// Smallest bend of the depth that makes an outline, in steps of 24 bits. Within a plane triangle the depth is linear on
-/// the screen, so that it bends only by rounding.
+/// Second difference of the depth of three neighbouring pixels above which the middle pixel is an edge, in units of the
+/// lowest of 24 bits. Within a flat triangle, depth is linear on the screen. Its second difference comes only from
+/// rounding.
 const BEND: i64 = 24;
 
-/// Returns a wire frame of what an ideal picture shows, as bytes. A pixel is opaque where the depth bends, which is at
-/// edges between triangles and at the rim of objects. All other pixels are transparent.
+/// Returns the edges visible in an ideal picture as bytes. A pixel is opaque where the depth on the screen is not
+/// linear: at edges between triangles and at the rim of objects. All other pixels are transparent.
 pub(crate) fn outlines(picture: &IdealPicture) -> Vec<u8> {
     let [width, height] = [picture.image().width() as usize, picture.image().height() as usize];
     let depths = picture.depths();
@@ -174,7 +179,7 @@ mod tests {
         session
     }
 
-    /// The depth of a plane is linear on the screen, so that it bends nowhere.
+    /// Within a plane, depth is linear on the screen, so it has no bend.
     #[test]
     fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
         let opaque =

@@ -1,4 +1,4 @@
-//! A run in pieces with the functions that the page needs.
+//! A run in short steps, with the functions that the page needs.
 
 use crate::files::Files;
 use crate::look;
@@ -13,22 +13,22 @@ use serde_json::Value;
 use std::sync::Arc;
 use tracking::motion::{GrowingRecording, Recording};
 
-/// Name of the recording for a head that is moved on the page. The recording grows during the run.
+/// Name of the recorded motion for a head that the visitor of the page moves. This recording grows during the run.
 const LIVE: &str = "live.csv";
 
-/// A running experiment.
+/// An experiment that runs step by step.
 #[derive(Debug)]
 pub(crate) struct Session {
     stepper: Stepper,
-    /// True if all fields have been simulated.
+    /// True if all fields of the experiment have been simulated.
     is_over: bool,
-    /// Motion of a head that is moved on the page, otherwise `None`.
+    /// Motion of the head that the visitor moves, or `None` if the experiment has another motion.
     moves: Option<GrowingRecording>,
 }
 
 impl Session {
-    /// Creates a session from settings, one a line as in experiment files. `files` has the contents of files that the
-    /// settings name.
+    /// Creates the run of an experiment from settings, written one per line as in experiment files. `files` has the
+    /// contents of files that the settings name.
     pub(crate) fn new(settings: &str, files: &Files) -> Result<Self, String> {
         let mut file = ExperimentFile::new();
         for (name, contents) in &files.0 {
@@ -37,7 +37,7 @@ impl Session {
         for setting in settings.lines().map(str::trim).filter(|setting| !setting.is_empty()) {
             file.set_text(setting, "settings").map_err(|error| error.to_string())?;
         }
-        // Resolve all settings together, then keep only recent records, because a page may run for hours.
+        // Resolve all settings together. Then keep only recent records, because the page may run for hours.
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
         let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
@@ -52,7 +52,7 @@ impl Session {
         Ok(Self { stepper, is_over: false, moves })
     }
 
-    /// Extends the motion of the head that is moved on the page. The last row of `rows` must not be earlier than the
+    /// Adds poses to the motion of the head that the visitor moves. The last row of `rows` must not be earlier than the
     /// instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
@@ -65,7 +65,7 @@ impl Session {
     }
 
     pub(crate) fn run_to(&mut self, ps: u64) {
-        // Only a run to an instant after the end reports that the end was reached.
+        // The end of the experiment is reported only if the run continues to a later instant.
         let pause = self.stepper.run_to(Time(ps).min(self.stepper.end() + Span(1)));
         self.note(&pause);
     }
@@ -119,14 +119,14 @@ impl Session {
         faces.unwrap_or_default()
     }
 
-    /// Draws the scene of the run for the spinning display.
+    /// Draws the scene of the experiment for the spinning volumetric display.
     pub(crate) fn volume(&self) -> Result<Volume, String> {
         Volume::draw(self.stepper.experiment().scene())
     }
 }
 
-/// Gives the experiment a head whose motion begins with a recording and grows later. The future of the motion is
-/// unknown, so prediction is refused.
+/// Replaces the experiment's head motion by one that begins with a recording and grows later. The future of this motion
+/// is unknown, so a predictor is refused.
 fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<GrowingRecording>), String> {
     let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {
@@ -149,7 +149,7 @@ mod tests {
 
     const SETTINGS: &str = "pipeline=slats\nscene=full-screen:2\nfields=7\n";
 
-    /// The hash of the page is that of an uninterrupted run, as the command prints it.
+    /// The page reports the hash of an uninterrupted run, which is the hash that the command-line program prints.
     #[test]
     fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
         let mut session = new(SETTINGS).expect("known settings");
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(session.state()["config_hash"], outcome.experiment().config_hash().to_string());
     }
 
-    /// Returns a row of a recording with sixty samples a second, as the page makes them.
+    /// Returns row `n` of a recording with sixty samples per second, as the page creates it.
     fn row(n: u64) -> String {
         let half = f64::sin(n as f64 / 9.0) / 8.0;
         format!("{:.6},0,0,0,{:.9},0,{:.9},0\n", n as f64 / 60.0, half.cos(), half.sin())
@@ -185,7 +185,8 @@ mod tests {
         Files([(name.to_owned(), rows.into_bytes().into())].into_iter().collect())
     }
 
-    /// A link can replay a session: the recorded motion gives the same run as the motion that was made during the run.
+    /// A link can repeat a session: the recorded motion gives the same run as the motion that the visitor made during
+    /// the session.
     #[test]
     fn a_head_that_is_moved_while_the_machine_runs_is_its_recording() {
         for pipeline in

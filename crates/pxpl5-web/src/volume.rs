@@ -1,4 +1,4 @@
-//! The spinning volume: slices of a scene, and the view of an eye around the display.
+//! The spinning volumetric display: the slices of a scene, and the view of an eye beside the display.
 
 use crate::pictures::rgba;
 use image::{Rgb, RgbImage};
@@ -7,10 +7,10 @@ use pxpl5_scene::Scene;
 use spatialgl::{HostRenderer, Jitter, OneThread, Projection, SliceClip, VolumeConfig, VolumeFrame};
 use spatialgl::{record_scene, render_volume};
 
-/// Share of the lit pixels of a view that stay below white.
+/// Fraction of the lit pixels of a view that are darker than white.
 const BELOW_WHITE: f64 = 0.98;
 
-/// A volume on the display of the SpatialGL paper, with hyperbolic clipping and jittered projections.
+/// A scene drawn for the volumetric display of the SpatialGL paper, with hyperbolic clipping and jittered projections.
 #[derive(Debug)]
 pub(crate) struct Volume {
     frame: VolumeFrame,
@@ -28,20 +28,22 @@ impl Volume {
         Ok(Self { frame: frame.map_err(|error| error.to_string())?, radius })
     }
 
-    /// Returns the number of slices, and the width and height of a slice.
+    /// Returns the number of slices, followed by the width and the height of a slice in pixels.
     pub(crate) fn size(&self) -> [u32; 3] {
         let [width, height] = self.frame.planes.size();
         [self.frame.planes.slices(), width, height]
     }
 
-    /// Returns a slice as bytes. Each pixel is lit by its three bits. An unknown slice is black.
+    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue. A slice
+    /// that does not exist is black.
     pub(crate) fn slice(&self, number: u32) -> Vec<u8> {
         let [slices, width, height] = self.size();
         let lit = |x, y| if number < slices { self.frame.planes.pixel(number, x, y) } else { 0 };
         rgba(&RgbImage::from_fn(width, height, |x, y| Rgb([0, 1, 2].map(|channel| 255 * (lit(x, y) >> channel & 1)))))
     }
 
-    /// Returns the view over one turn from a distance of four radii. The picture is `side` pixels wide and high.
+    /// Returns the view of an eye during one turn of the display, from a distance of four radii. The picture is `side`
+    /// pixels wide and high.
     pub(crate) fn seen(&self, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Result<Vec<u8>, String> {
         let camera = Camera::around(self.radius, azimuth_deg, elevation_deg, side);
         let light = view_planes(&self.frame.planes, &camera, ViewOptions::default(), &OneThread);

@@ -20,7 +20,7 @@ pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
 
-/// The adjustable numbers of the trackers, of the host's serial port and of the predictors.
+/// The adjustable numbers of the trackers, the host's serial port and the prediction filters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tables {
     /// Numbers of the Polhemus Fastrak, a magnetic tracker.
@@ -42,7 +42,7 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// The values that the papers give or allow.
+    /// The papers' values. Where no paper gives a value, the number is an assumption.
     pub const PAPERS: Self = Self {
         fastrak: Fastrak::PAPERS,
         flock: Flock::PAPERS,
@@ -68,7 +68,7 @@ impl Tables {
         ]
     }
 
-    /// Returns the table called `name` for changing its numbers, or `None` if no table has this name.
+    /// Returns the table called `name`, so that its numbers can be changed. Returns `None` if no table has this name.
     pub fn named_mut(&mut self, name: &str) -> Option<&mut dyn ParameterTable> {
         Some(match name {
             "fastrak" => &mut self.fastrak,
@@ -84,8 +84,8 @@ impl Tables {
     }
 }
 
-/// Tables of fixed facts with their names: head speeds, the latency rig, NTSC video and the picture of the papers'
-/// displays. An experiment cannot change these numbers.
+/// Tables of fixed facts with their names: head speeds, the pendulum rig that measures latency, NTSC video, and the
+/// picture size of the head-mounted display. An experiment cannot change these numbers.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -106,16 +106,19 @@ parameter_table! {
         record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
         /// Serial line rate of the Fastrak.
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
-        /// Gain a of the Fastrak's filter x' = a x + (1 - a) x'. The filter adds a delay of dt (1 - a) / a, where dt is
-        /// the time between measurements. A gain of 1 turns the filter off.
+        /// Gain a of the Fastrak's low-pass filter, which replaces its output x' by a x + (1 - a) x' at each
+        /// measurement x. The filter adds a delay of dt (1 - a) / a, where dt is the time between measurements. A gain
+        /// of 1 turns the filter off.
         filter_gain: f64 = 1.0, "1", Assumed, 0.05..=1.0 in 0.000001..=1.0, "PF describes the filter, with an apparent latency of 4.2 ms at 0.95 and of 162 ms at 0.05; the project assumes that the filter is off";
-        /// Position noise of the Fastrak from report to report, rms of each axis.
+        /// Random position error of the Fastrak that changes with each report, rms along each axis.
         position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives no value; assumed below the tracker's static accuracy";
-        /// Orientation noise of the Fastrak from report to report, rms about each axis.
+        /// Random orientation error of the Fastrak that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives no value; assumed below the tracker's static accuracy";
-        /// Static position error of the Fastrak, rms of each axis: a bias, the same in every report of a run.
+        /// Constant position error of the Fastrak, the same in every report of a run. The value is the rms along each
+        /// axis over all seeds.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
-        /// Static orientation error of the Fastrak, rms about each axis: a bias, the same in every report of a run.
+        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the rms about
+        /// each axis over all seeds.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
@@ -129,16 +132,17 @@ parameter_table! {
         position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0 in 0.0..=10000.0, "VRPN";
         /// Orientation latency of the Flock of Birds with its filters off.
         orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0 in 0.0..=10000.0, "VRPN";
-        /// Position noise of the Flock of Birds from report to report, rms of each axis.
+        /// Random position error of the Flock of Birds that changes with each report, rms along each axis.
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
-        /// Orientation noise of the Flock of Birds from report to report, rms about each axis.
+        /// Random orientation error of the Flock of Birds that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
-        /// Static position error of the Flock of Birds, rms of each axis: a bias, the same in every report of a run.
+        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the rms along
+        /// each axis over all seeds.
         position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
-        /// Static orientation error of the Flock of Birds, rms about each axis: a bias, the same in every report of a
-        /// run.
+        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the rms
+        /// about each axis over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
-        /// Time from the first report until a patched host crashes with the Flock of Birds.
+        /// Time from the first report of a Flock of Birds until a host with a patched kernel crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
 }
@@ -148,17 +152,17 @@ parameter_table! {
     pub struct Optical {
         /// Measurement rate of the optical ceiling tracker.
         rate: 60, "Hz", Assumed, 20..=100 in 1..=10000, "WARD92 gives 20-100";
-        /// Latency of the optical ceiling tracker.
+        /// Latency of the optical ceiling tracker, from the measurement to the output of its report.
         latency: f64 = 33.0, "ms", Published, 20.0..=60.0 in 0.0..=10000.0, "I3D95; WARD92 gives 20-60";
-        /// Position noise of the optical ceiling tracker from report to report, rms of each axis.
+        /// Random position error of the optical ceiling tracker that changes with each report, rms along each axis.
         position_noise: f64 = 1.5, "mm", Assumed, 0.6..=2.0 in 0.0..=10000.0, "at most WARD92's resolution of 2 mm, at least 2/sqrt(12); between by the angle's";
-        /// Orientation noise of the optical ceiling tracker from report to report, rms about each axis.
+        /// Random orientation error of the optical ceiling tracker that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
-        /// Static position error of the optical ceiling tracker, rms of each axis: a bias, the same in every report of
-        /// a run.
+        /// Constant position error of the optical ceiling tracker, the same in every report of a run. The value is the
+        /// rms along each axis over all seeds.
         position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
-        /// Static orientation error of the optical ceiling tracker, rms about each axis: a bias, the same in every
-        /// report of a run.
+        /// Constant orientation error of the optical ceiling tracker, the same in every report of a run. The value is
+        /// the rms about each axis over all seeds.
         orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
@@ -170,17 +174,20 @@ parameter_table! {
         rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// Latency of the 3Space, from measurement to output.
         latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";
-        /// Position noise of the 3Space from report to report, rms of each axis.
+        /// Random position error of the 3Space that changes with each report, rms along each axis.
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
-        /// Orientation noise of the 3Space from report to report, rms about each axis.
+        /// Random orientation error of the 3Space that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
-        /// Static position error of the 3Space, rms of each axis: a bias, the same in every report of a run.
+        /// Constant position error of the 3Space, the same in every report of a run. The value is the rms along each
+        /// axis over all seeds.
         position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
-        /// Static orientation error of the 3Space, rms about each axis: a bias, the same in every report of a run.
+        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the rms about each
+        /// axis over all seeds.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
-        /// Depth of the bowl into which metal distorts a measured plane, at 1 m from the transmitter.
+        /// Depth of the position error by metal, at 1 m from the transmitter. Metal bends a measured plane into a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
-        /// Distance from the transmitter at which the bowl has half the depth of its parabola.
+        /// Distance from the transmitter at which the position error by metal is half of its parabola. The error bends
+        /// a measured plane into a bowl.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
@@ -210,13 +217,13 @@ parameter_table! {
         typical_turn: f64 = 200.0, "deg/s", Published, 0.0..=370.0, "JITP, LIST83";
         /// Peak speed of a head turn.
         peak_turn: f64 = 370.0, "deg/s", Published, 200.0..=600.0, "JITP, LIST83";
-        /// Mean angular speed in recorded headset traces.
+        /// Mean angular speed of the head in recorded traces of headset use.
         mean_turn: f64 = 40.0, "deg/s", Published, 40.0..=40.0, "17 minutes of recorded use";
-        /// 95th percentile of the angular speed in recorded headset traces.
+        /// 95th percentile of the head's angular speed in recorded traces of headset use.
         turn_95: f64 = 114.0, "deg/s", Published, 114.0..=114.0, "17 minutes of recorded use";
-        /// 99.9th percentile of the angular speed in recorded headset traces.
+        /// 99.9th percentile of the head's angular speed in recorded traces of headset use.
         turn_999: f64 = 283.0, "deg/s", Published, 283.0..=283.0, "17 minutes of recorded use";
-        /// Mean translation speed in recorded headset traces.
+        /// Mean translation speed of the head in recorded traces of headset use.
         mean_translation: f64 = 0.37, "m/s", Published, 0.37..=0.37, "17 minutes of recorded use";
         /// Frequency below which 95 % of the energy of a head's yaw lies.
         yaw_energy_95: f64 = 0.14, "Hz", Published, 0.14..=0.14, "17 minutes of recorded use";
@@ -226,7 +233,8 @@ parameter_table! {
 }
 
 parameter_table! {
-    /// The pendulum rig that measures latency, with the detectors of the pendulum's low point.
+    /// The pendulum rig that measures latency. Light detectors show the instants at which the pendulum passes its low
+    /// point.
     pub struct RigNumbers {
         /// Length of the pendulum's arm.
         pendulum_arm: f64 = 0.5, "m", Assumed, 0.1..=2.0 in 0.001..=1000.0, "TR94 gives none";
@@ -234,9 +242,10 @@ parameter_table! {
         pendulum_amplitude: f64 = 20.0, "deg", Assumed, 1.0..=90.0 in 0.001..=179.0, "TR94 gives none";
         /// Standard gravity.
         gravity: f64 = 9.80665, "m/s^2", Published, 9.78..=9.84, "CGPM 1901";
-        /// Width of the LED's beam at the pendulum.
+        /// Width of the light beam at the pendulum. The LED's beam is interrupted when the pendulum passes its low
+        /// point.
         led_beam: f64 = 2.0, "mm", Assumed, 0.1..=20.0, "TR94 gives none";
-        /// Visible line of the screen that the photodiode covers.
+        /// Index of the visible scanline that the photodiode on the screen covers.
         photodiode_line: 120, "lines", Assumed, 0..=239, "middle of a 240-line field; TR94 gives none";
     }
 }
@@ -266,21 +275,25 @@ parameter_table! {
 parameter_table! {
     /// Assumptions of the prediction filters about noise and motion.
     pub struct Filter {
-        /// Root of the spectral density of the white jerk that drives the position filter.
+        /// Assumed strength of random changes of the head's acceleration. The value is the root of the spectral density
+        /// of white jerk in the position filter.
         position_jerk: f64 = 0.4, "m/s^3/sqrt(Hz)", Assumed, 0.01..=1000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 0.2 to 0.6; used where the filter is not tuned";
-        /// Root of the spectral density of the white jerk that drives the orientation filter.
+        /// Assumed strength of random changes of the head's angular acceleration. The value is the root of the spectral
+        /// density of white jerk in the orientation filter.
         orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
-        /// Standard deviation of the speed that a filter assumes at its start.
+        /// Standard deviation of the head's speed before the first report, as a filter assumes.
         start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
-        /// Standard deviation of the acceleration that a filter assumes at its start.
+        /// Standard deviation of the head's acceleration before the first report, as a filter assumes.
         start_acceleration: f64 = 5.0, "m/s^2", Assumed, 0.01..=100.0 in 0.000001..=10000.0, "half of gravity";
-        /// Standard deviation of the angular velocity that a filter assumes at its start.
+        /// Standard deviation of the head's angular velocity before the first report, as a filter assumes.
         start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0 in 0.000001..=1000.0, "the 95th percentile of recorded traces";
-        /// Standard deviation of the angular acceleration that a filter assumes at its start.
+        /// Standard deviation of the head's angular acceleration before the first report, as a filter assumes.
         start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0 in 0.000001..=100000.0, "100 ms to reach the above";
-        /// Distance in reports between the two points of a difference. A value of 1 takes neighbouring reports.
+        /// Number of reports from one pose to the other when a velocity is computed as a difference of two poses. A
+        /// value of 1 takes neighbouring reports.
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
-        /// Longest prediction. Beyond this horizon the predictor returns the last pose.
+        /// Longest time ahead for which a predictor extrapolates. For later instants the predictor returns the last
+        /// reported pose.
         horizon: f64 = 500.0, "ms", Assumed, 1.0..=10000.0, "2.5 times the longest measured prediction";
     }
 }
@@ -288,19 +301,22 @@ parameter_table! {
 parameter_table! {
     /// Limits by which a predictor accepts or rejects reports.
     pub struct Gate {
-        /// Fastest translation that the gate accepts.
+        /// Fastest translation of the head that a predictor believes. A report that implies a faster translation is
+        /// rejected.
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
-        /// Fastest turn that the gate accepts.
+        /// Fastest turn of the head that a predictor believes. A report that implies a faster turn is rejected.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
-        /// Distance between two reports that noise alone may cause.
+        /// Distance between two successive reported positions that noise alone can cause. The test of the speed ignores
+        /// this distance.
         distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Angle between two reports that noise alone may cause.
+        /// Angle between two successive reported orientations that noise alone can cause. The test of the turn ignores
+        /// this angle.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Number of successive rejected jumps after which the gate accepts the new position.
+        /// Number of successive rejected jumps after which a predictor accepts the new position.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
         /// Time without reports after which a filter restarts with unknown velocities.
         gap: f64 = 250.0, "ms", Assumed, 10.0..=10000.0, "30 reports at 120 Hz; longer than any planned prediction";
-        /// Least time between two accepted reports.
+        /// Least time between two accepted reports. A report that follows sooner is rejected.
         interval: f64 = 0.05, "ms", Assumed, 0.0..=1.0, "half the period of the fastest rate of a tracker";
     }
 }

@@ -1,4 +1,4 @@
-//! Errors in a configuration of a tracked head.
+//! Errors in the settings of head motion, trackers and predictors.
 
 use parameters::ParameterError;
 use thiserror::Error;
@@ -7,13 +7,13 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SettingError {
-    /// A number of a parameter table is not finite or out of range.
+    /// A number of a parameter table is not finite or is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A number outside the parameter tables is not finite or out of range.
+    /// A number outside the parameter tables is not finite or is out of range.
     #[error("{what}: expected {low} to {high}, found {found}")]
     OutOfRange {
-        /// Description of the setting.
+        /// Description of the setting that is out of range.
         what: &'static str,
         /// The value that was given.
         found: f64,
@@ -25,7 +25,7 @@ pub enum SettingError {
     /// Two settings contradict each other.
     #[error("settings contradict each other: {what}")]
     Contradiction {
-        /// Description of the settings and of their contradiction.
+        /// Description of both settings and of their contradiction.
         what: &'static str,
     },
 }

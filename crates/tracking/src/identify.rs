@@ -1,4 +1,4 @@
-//! Writes trackers and predictors as keys and values.
+//! Lists the settings of trackers and predictors as keys and values. The names of experiments derive from this list.
 
 use parameters::{Entry, ParameterTable};
 
@@ -8,7 +8,7 @@ use crate::predict::PredictorConfig;
 use crate::tracker::{HostLine, MagneticDistortion, SerialLine, TrackerConfig, TrackerFault};
 
 impl TrackerConfig {
-    /// Writes every setting of the tracker as a key and a value to `settings`.
+    /// Writes every setting of the tracker to `settings`, each as a key and a value.
     pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             name,
@@ -84,7 +84,7 @@ fn write_fault(settings: &mut SettingSink, fault: &TrackerFault) {
 }
 
 impl PredictorConfig {
-    /// Writes every setting of the predictor as a key and a value to `settings`.
+    /// Writes every setting of the predictor to `settings`, each as a key and a value.
     pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             kind,
@@ -114,8 +114,8 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a number only if it differs from the papers' value. Experiments with the papers' values keep the names from
-/// before the number became a setting.
+/// Writes a number only if it differs from the papers' value. Thus an experiment with the papers' values keeps the name
+/// that it had before the number became a setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -1,8 +1,8 @@
-//! Writes motions, trackers and predictors as keys and values. The names of experiments derive from these texts and
-//! must not change with the name of a type or a field.
+//! Lists the settings of motions, trackers and predictors as keys and values. The names of experiments derive from
+//! these texts. Renaming a type or a field must therefore not change a text.
 //!
 //! [`Display`] formats every number; for an `f64` this is the shortest text that parses to the same number. The
-//! functions destructure each struct, so a new field that is not written does not compile.
+//! functions destructure each struct, so code that forgets a new field does not compile.
 
 use core::fmt::Display;
 

@@ -5,20 +5,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::rotation;
 
-/// Position in metres and orientation (head to world). Right-handed, y up; the head looks along its own -z.
+/// A position in metres and an orientation (head axes to world axes). Axes are right-handed with y up, and the head
+/// looks along its own -z axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Position in the world, metres: the point between the eyes, or the eye itself if there is only one picture.
+    /// Position of the head in the world, metres: the point between the eyes. With a single picture this is the
+    /// position of the eye.
     pub position: DVec3,
     /// Unit quaternion that rotates head axes into world axes.
     pub orientation: DQuat,
 }
 
 impl Pose {
-    /// The pose at the origin that looks along -z.
+    /// The pose of a head at the origin that looks along -z.
     pub const IDENTITY: Self = Self { position: DVec3::ZERO, orientation: DQuat::IDENTITY };
 
-    /// Creates a pose at `position` that looks along -z.
+    /// Creates a pose at `position` with the identity orientation, so that the head looks along -z.
     pub fn at(position: DVec3) -> Self {
         Self { position, ..Self::IDENTITY }
     }
@@ -28,12 +30,12 @@ impl Pose {
         Self { orientation, ..Self::IDENTITY }
     }
 
-    /// Rounds every number to single precision, the precision of a scene's coordinates.
+    /// Returns the pose with every number rounded to single precision, the precision of scene coordinates.
     pub fn in_single_precision(&self) -> Self {
         Self { position: self.position.as_vec3().as_dvec3(), orientation: self.orientation.as_quat().as_dquat() }
     }
 
-    /// Converts a world point into head axes (metres, -z ahead).
+    /// Converts a position in the world into the head's axes (metres, the view along -z).
     pub fn view_of(&self, world: DVec3) -> DVec3 {
         self.orientation.conjugate() * (world - self.position)
     }

@@ -1,7 +1,6 @@
-//! Random numbers as pure functions of (seed, index). Reports and knots can be drawn in any order, on any host.
+//! Random numbers as pure functions of (seed, index). They can be drawn in any order and are the same on every host.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014). The step of the generator is [`pxpl5_sim::mix`] of the
-//! simulation kernel.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014). Its step is [`pxpl5_sim::mix`] of the simulation kernel.
 
 use pxpl5_sim::mix;
 
@@ -14,18 +13,19 @@ pub fn bits(seed: u64, index: u64) -> u64 {
     mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
 
-/// Returns the seed of an independent stream. Two rounds prevent streams of neighbouring seeds from overlapping.
+/// Returns the seed of random stream `name`, independent of the streams of other names and seeds. Two rounds of mixing
+/// prevent streams of neighbouring seeds from overlapping.
 pub(crate) fn stream(seed: u64, name: u64) -> u64 {
     bits(bits(seed, name), seed)
 }
 
-/// Returns a number uniform in [0, 1), made of the upper 53 bits.
+/// Converts random bits to a number uniform in [0, 1), using the upper 53 bits.
 #[must_use]
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Returns an integer uniform in [0, bound), with a bias below bound / 2^64.
+/// Converts random bits to an integer uniform in [0, bound). The probabilities differ by less than bound / 2^64.
 pub(crate) fn below(bits: u64, bound: u64) -> u64 {
     ((u128::from(bits) * u128::from(bound)) >> 64) as u64
 }
@@ -39,8 +39,9 @@ pub(crate) fn normal_pair(seed: u64, index: u64) -> (f64, f64) {
     (radius * cos, radius * sin)
 }
 
-/// Returns a bell-shaped deviate of mean 0 and variance 1 in [-2 sqrt 3, 2 sqrt 3]: the sum of four 16-bit uniforms
-/// (Irwin-Hall). Without transcendental functions it is much cheaper than [`normal_pair`].
+/// Converts random bits to a bell-shaped deviate of mean 0 and variance 1, within [-2 sqrt 3, 2 sqrt 3]. It is the sum
+/// of four 16-bit uniform numbers (Irwin-Hall). The function is much cheaper than [`normal_pair`], because it uses no
+/// transcendental functions.
 pub(crate) fn bell(bits: u64) -> f64 {
     let sum = (bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48);
     (sum as f64 / 65_535.0 - 2.0) * SQRT_3

@@ -6,7 +6,8 @@
 
 use glam::{DQuat, DVec3};
 
-/// Squared half angle below which the series of [`exp`] and [`log`] are exact to the last bit (next term < 1e-18).
+/// Squared half angle below which [`exp`] and [`log`] use a series. Its next term is below 1e-18, so the result is
+/// exact to the last bit.
 const SERIES_BELOW: f64 = 1e-6;
 
 /// Returns the rotation by the vector `r` (rad). Any length is allowed.
@@ -23,8 +24,8 @@ pub fn exp(r: DVec3) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, cos)
 }
 
-/// Returns the shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. `q` and `-q` give the same
-/// vector.
+/// Returns the shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. The quaternions `q` and
+/// `-q` give the same vector.
 pub fn log(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = DVec3::new(q.x, q.y, q.z);
@@ -37,7 +38,7 @@ pub fn log(q: DQuat) -> DVec3 {
     v * (2.0 * libm::atan2(sin, q.w) / sin)
 }
 
-/// Returns the world-frame rotation vector that rotates `from` into `to` the shorter way.
+/// Returns the world-frame rotation vector (rad) of the shorter rotation from `from` to `to`.
 pub fn difference(from: DQuat, to: DQuat) -> DVec3 {
     log(to * from.conjugate())
 }
@@ -47,7 +48,8 @@ pub fn angle_deg(a: DQuat, b: DQuat) -> f64 {
     difference(a, b).length().to_degrees()
 }
 
-/// Interpolates spherically between two orientations the shorter way: `from` at 0, `to` at 1.
+/// Interpolates spherically along the shorter rotation between two orientations. The result is `from` for `s` = 0 and
+/// `to` for `s` = 1.
 pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
     (exp(difference(from, to) * s) * from).normalize()
 }

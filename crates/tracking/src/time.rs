@@ -1,4 +1,5 @@
-//! Conversions between picoseconds and seconds. Instants stay integers. Only differences become floating point.
+//! Conversions between picoseconds and seconds. Instants stay integers, and only their differences become floating
+//! point.
 
 /// Picoseconds in a second.
 pub const PS_PER_S: u64 = 1_000_000_000_000;
@@ -6,7 +7,7 @@ pub const PS_PER_S: u64 = 1_000_000_000_000;
 /// Picoseconds in a millisecond.
 pub const PS_PER_MS: u64 = 1_000_000_000;
 
-/// Converts an instant to seconds. Whole seconds are converted separately, so an instant beyond 2^53 ps keeps its
+/// Converts an instant to seconds. Whole seconds are converted separately, so a late instant (beyond 2^53 ps) keeps its
 /// fraction.
 pub fn seconds(t_ps: u64) -> f64 {
     (t_ps / PS_PER_S) as f64 + (t_ps % PS_PER_S) as f64 / PS_PER_S as f64
@@ -27,7 +28,7 @@ pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
 /// Duration of an NTSC field, floor(1001 / 60000 s).
 pub const NTSC_FIELD_PS: u64 = 1_001 * PS_PER_S / 60_000;
 
-/// Returns the time from the first visible line of an NTSC field to its line `n`: floor(n x 4004/63 us).
+/// Returns the time from the first visible line of an NTSC field to its visible line `n`, ps: floor(n x 4004/63 us).
 pub fn ntsc_lines_ps(n: u32) -> u64 {
     u64::from(n) * 4_004_000_000 / 63
 }

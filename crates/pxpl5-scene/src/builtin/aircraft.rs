@@ -1,8 +1,8 @@
-//! A swept-wing jet with a closed surface of 100 triangles, few enough for Slats to draw in time.
+//! A swept-wing jet with a closed surface of 100 triangles. The Slats method can draw so few triangles in time.
 //!
 //! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
-//! The finished aircraft is scaled to the radius of `mig` and uses the same flight path. Every part is a closed solid
-//! that reaches into its neighbour.
+//! The finished aircraft is scaled to the radius of the scene `mig` and uses the same flight path. Every part is a
+//! closed solid that reaches into its neighbour.
 
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ pub(super) fn scene() -> Scene {
 
 const SIDES: u32 = 6;
 
-/// Builds a fuselage of four rings between two points, with smooth normals.
+/// Returns the mesh of the fuselage: four rings between a tail point and a nose point, with smooth normals.
 fn fuselage() -> Mesh {
     // (z, y, half width, half height) of each ring, from the tail to the nose.
     let stations = [(-4.6, 0.12, 0.45, 0.5), (-1.6, 0.05, 0.8, 0.88), (2.2, 0.0, 0.8, 0.86), (4.6, -0.05, 0.5, 0.52)];
@@ -73,7 +73,7 @@ fn fuselage() -> Mesh {
     mesh
 }
 
-/// Returns a cross-section of a wing along the flight direction: leading edge, upper side, trailing edge, lower side.
+/// Returns a wing's cross-section along the direction of flight: leading edge, upper side, trailing edge, lower side.
 fn diamond(leading: DVec3, chord: f64, thickness: DVec3) -> Vec<DVec3> {
     let middle = leading - DVec3::Z * (0.4 * chord);
     vec![leading, middle + thickness, leading - DVec3::Z * chord, middle - thickness]
@@ -102,7 +102,7 @@ fn fin() -> Vec<Vec<DVec3>> {
     prism(&root, &tip)
 }
 
-/// Returns two pyramids on one base, which lies inside the fuselage.
+/// Returns the faces of the canopy: two pyramids on one base, which lies inside the fuselage.
 fn canopy() -> Vec<Vec<DVec3>> {
     let base = [(0.0, 3.6), (0.4, 1.9), (0.0, -0.4), (-0.4, 1.9)].map(|(x, z)| DVec3::new(x, 0.62, z));
     let [above, below] = [1.35, 0.4].map(|y| DVec3::new(0.0, y, 1.9));
@@ -111,7 +111,7 @@ fn canopy() -> Vec<Vec<DVec3>> {
     sides(above).chain(lower).collect()
 }
 
-/// Returns the faces of a solid between two sections with the same number of points.
+/// Returns the faces of a solid between two cross-sections with the same number of points.
 fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip[(side + 1) % count], tip[side]];
@@ -119,7 +119,7 @@ fn prism(root: &[DVec3], tip: &[DVec3]) -> Vec<Vec<DVec3>> {
     (0..count).map(side).chain(ends).collect()
 }
 
-/// Returns the faces of a pyramid with the base `root`.
+/// Returns the faces of a pyramid with base `root` and top `tip`.
 fn pyramid(root: &[DVec3], tip: DVec3) -> Vec<Vec<DVec3>> {
     let count = root.len();
     let side = |side: usize| vec![root[side], root[(side + 1) % count], tip];
@@ -131,8 +131,8 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
     face
 }
 
-/// Adds a solid of flat faces with outward normals. A solid with a negative volume is a mirrored one, and its faces are
-/// reversed.
+/// Adds a solid of flat faces with outward normals. If the volume is negative, the faces face inwards (the solid is a
+/// mirror image), so they are reversed.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
     let six_volumes =
         |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };

@@ -6,20 +6,20 @@ use super::one_structure;
 use crate::import::Mesh;
 use crate::scene::{Frame, Scene};
 
-/// Distance from the head to the nearest and the farthest triangle, metres. Assumed, within the near and far planes of
-/// any display.
+/// Distances from the head to the nearest and to the farthest triangle, metres. Assumed, within the near and far planes
+/// of any display.
 const NEAR_M: f64 = 1.0;
 const FAR_M: f64 = 2.0;
 
-/// Tangent of the covered half angle in each direction from each eye: a field of view of 90 degrees. Head-mounted
-/// displays have 60 degrees here, and the faces of a cube 90.
+/// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives a field of
+/// view of 90 degrees. Head-mounted displays have 60 degrees in this project, and the faces of a cube have 90.
 const COVERED: f64 = 1.0;
 
-/// Distance of the eyes from the centre of the head, metres: half of the greatest separation of eyes, 74 mm.
+/// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.
 const EYES_M: f64 = 0.037;
 
-/// Farthest reach of the smallest triangle around a square, from the square's centre along one axis, if half of the
-/// square's side is 1. The value is 1 + sqrt(2).
+/// Distance along one axis from the centre of a square to the farthest corner of the smallest triangle around the
+/// square. The unit is half the square's side. The value is 1 + sqrt(2).
 const REACH: f64 = 1.0 + std::f64::consts::SQRT_2;
 
 pub(super) fn scene(count: u32) -> Scene {
@@ -33,12 +33,12 @@ pub(super) fn scene(count: u32) -> Scene {
     one_structure::scene(&name, &name, Frame::Head, mesh.vertices(), mesh.triangles)
 }
 
-/// Adds the triangle around the covered square whose corners are nearest to its centre. The corners reach 1 + sqrt(2)
-/// times half of the square's side, horizontally and vertically.
+/// Adds a triangle that covers a square. Of all such triangles, its farthest corner is nearest to the centre of the
+/// square. Its corners reach 1 + sqrt(2) times half of the square's side, horizontally and vertically.
 ///
 /// The corners lie at (-r, -r), (r, -s) and (-s, r), where r = (1 + sqrt(2)) h, s = (sqrt(2) - 1) h and h is half of
-/// the side. Two sides run through the lower right and the upper left corner of the square. The third side runs through
-/// the upper right corner.
+/// the side. Two sides of the triangle run through the lower right and the upper left corner of the square. The third
+/// side runs through the upper right corner.
 ///
 /// The triangle is never clipped in pictures of up to 1,500 pixels across. At 60 degrees its corners are at most 4.4
 /// times half of the picture's width from the centre of the picture. The guard band ends 4,095 pixels minus half of the
@@ -52,7 +52,7 @@ fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     mesh.fan(&corners);
 }
 
-/// Returns one of six hues in turn. After every six triangles the hue becomes a shade darker.
+/// Returns the colour of a triangle: one of six hues in turn, a shade darker after every six triangles.
 fn colour(index: u32) -> [u8; 3] {
     let hues = [[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1], [1, 0, 1]];
     let bright = 255 - (index / 6 % 8) as u8 * 24;

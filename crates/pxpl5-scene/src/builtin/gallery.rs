@@ -1,5 +1,5 @@
-//! An art gallery with a path: a hall whose floor, ceiling, walls and partitions are large quadrangles. Priority
-//! rendering cuts such quadrangles into segments.
+//! An art gallery with a path through it. Floor, ceiling, walls and partitions of the hall are large quadrangles, which
+//! priority rendering cuts into segments.
 //!
 //! All numbers are assumed, because the papers print neither size nor plan. The path runs 1 m beside the partitions.
 //! This path is the worst case for a method that redraws only outdated segments.
@@ -15,20 +15,20 @@ use crate::sway::Sway;
 /// Half the length and half the width of the hall, metres.
 const HALF_M: f64 = 20.0;
 
-/// Heights of the hall, of its partitions, and of the eyes on the path, metres.
+/// Heights of the hall, of its partitions and of a viewer's eyes, metres.
 const HEIGHT_M: f64 = 4.0;
 const PARTITION_M: f64 = 3.0;
 const EYE_M: f64 = 1.7;
 
-/// Distance of the path from a partition's near side, and thickness of a partition, metres.
+/// Distance of the path from the near side of a partition, and thickness of a partition, metres.
 const BESIDE_M: f64 = 1.0;
 const THICKNESS_M: f64 = 0.1;
 
-/// Beginning and end of a partition, as fractions of the leg of the path beside it.
+/// Beginning and end of a partition, as fractions of the straight part of the path beside it.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
-/// Corners of the path, x and z in metres. The legs are slanted, so the distances to the borders of cells change all
-/// the time.
+/// Corners of the path, x and z in metres. The straight parts are slanted, so the distances to the borders of cells
+/// change all the time.
 const CORNERS: [[f64; 2]; 10] = [
     [-16.0, -15.0],
     [-3.0, -17.0],
@@ -50,7 +50,7 @@ const WALLS: [[u8; 3]; 4] = [[170, 140, 120], [120, 150, 170], [165, 165, 120], 
 /// Colours of the partitions, used in turn.
 const PARTITIONS: [[u8; 3]; 5] = [[200, 90, 80], [90, 130, 200], [210, 180, 90], [110, 180, 110], [170, 110, 180]];
 
-/// Generates the hall with its partitions, and with picture frames and benches if `is_full`.
+/// Generates the hall with its partitions. If `is_full` is true, the hall also has picture frames and benches.
 pub(super) fn scene(is_full: bool) -> Scene {
     let mut solid = Solid::default();
     hall(&mut solid);
@@ -63,7 +63,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
             bench(&mut solid, leg);
         }
     }
-    // The head stands at the first corner and looks along the path, unless the run chooses to walk.
+    // The head stands at the first corner and looks along the path. A run can let it walk along the path instead.
     let path: Vec<Vec3> = CORNERS.map(|[x, z]| DVec3::new(x, EYE_M, z).as_vec3()).to_vec();
     let standing = HeadPath::Still { eye: path[0], target: path[1] };
     let parts = SceneParts {
@@ -72,7 +72,8 @@ pub(super) fn scene(is_full: bool) -> Scene {
         triangles: solid.mesh.triangles,
         spheres: Vec::new(),
         structures: solid.structures,
-        // Lamps cover the ceiling, so most of the light is ambient. With less, the ceiling itself would be black.
+        // Lamps cover the ceiling, so most of the light is ambient. With less ambient light the ceiling itself would be
+        // black.
         lighting: Lighting { ambient: 0.6, diffuse: 0.4, ..Lighting::over_the_shoulder() },
         motion: HeadMotion::new(standing, Sway::none()).expect("pxpl5-scene: constants are in range"),
         path,
@@ -80,7 +81,7 @@ pub(super) fn scene(is_full: bool) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Adds a quadrangle, whose corners are anticlockwise seen from the visible side.
+/// Adds a quadrangle. Its corners run anticlockwise, seen from the visible side.
 fn quadrangle(solid: &mut Solid, corners: [DVec3; 4], colour: [u8; 3]) {
     let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize();
     let mut part = Mesh::default();
@@ -130,7 +131,7 @@ fn hall(solid: &mut Solid) {
     }
 }
 
-/// A leg of the path on the floor.
+/// A straight part of the path, on the floor between two corners.
 struct Leg {
     from: DVec3,
     along: DVec3,
@@ -148,7 +149,7 @@ fn leg(number: usize) -> Leg {
     Leg { from, along, length, left: DVec3::Y.cross(along) }
 }
 
-/// Adds an upright box with five sides. A box above the floor also gets its lower side.
+/// Adds an upright box without its lower side. A box above the floor gets the lower side too.
 fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: [u8; 3]) {
     let across = DVec3::Y.cross(along);
     let corner =
@@ -164,7 +165,7 @@ fn upright(solid: &mut Solid, middle: DVec3, along: DVec3, half: DVec3, colour: 
     }
 }
 
-/// Returns the middle of a leg's partition at floor level.
+/// Returns the middle, at floor level, of the partition beside a straight part of the path.
 fn partition_middle(leg: &Leg) -> DVec3 {
     leg.from + leg.along * (leg.length / 2.0) + leg.left * (BESIDE_M + THICKNESS_M / 2.0)
 }
@@ -191,7 +192,7 @@ fn frame(solid: &mut Solid, number: usize, place: usize) {
     solid.end_structure(&format!("frame {number}.{place}"), None);
 }
 
-/// Adds a bench on the other side of the path, opposite the partition.
+/// Adds a bench beside the path, on the side without the partition.
 fn bench(solid: &mut Solid, number: usize) {
     let leg = leg(number);
     let middle = leg.from + leg.along * (leg.length / 2.0) - leg.left * (2.0 * BESIDE_M);
@@ -203,7 +204,7 @@ fn bench(solid: &mut Solid, number: usize) {
 mod tests {
     use super::*;
 
-    /// Returns the distance of a point from a segment on the floor.
+    /// Returns the distance of a point from a line segment on the floor, metres.
     fn distance(point: DVec3, from: DVec3, to: DVec3) -> f64 {
         let along = to - from;
         let share = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! A human head: the surface of [`super::head_shape`], sampled on a grid of meridians and parallels.
+//! A human head: the surface of [`super::head_shape`], sampled at the crossings of meridians and parallels.
 
 use glam::DVec3;
 
@@ -10,7 +10,8 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Numbers of meridians and parallels: 2 x 156 x 191 = 59,592 triangles, including the two caps of 156.
+/// Number of meridians. With 191 parallels, the head has 2 x 156 x 191 = 59,592
+/// triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
 const PARALLELS: usize = 191;
 
@@ -41,7 +42,7 @@ pub(super) fn scene() -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Samples the surface: one pole, the parallels from crown to neck, the other pole.
+/// Samples the surface of the head: the pole at the crown, the parallels from crown to neck, and the lower pole.
 fn grid() -> Mesh {
     let mut mesh = Mesh::default();
     let crown = push_hit(&mut mesh, Ray::new(0.0, 0.0));
@@ -60,12 +61,12 @@ fn grid() -> Mesh {
     mesh
 }
 
-/// Returns the vertex where a parallel meets a meridian. Vertex 0 is the crown.
+/// Returns the index of the vertex where a parallel meets a meridian. Index 0 is the crown.
 fn grid_index(parallel: usize, meridian: usize) -> u32 {
     (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32
 }
 
-/// Adds half of a parallel from the back to the face, and its mirror image.
+/// Adds the vertices of one parallel: first the half from the back of the head to the face, then its mirror image.
 fn push_parallel(mesh: &mut Mesh, down: f64) {
     const HALF: usize = MERIDIANS / 2;
     let first = mesh.positions.len();
@@ -81,20 +82,20 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds the vertex where a ray meets the surface.
+/// Adds a vertex where a ray from the spine meets the surface, and returns its index.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
 }
 
-/// A ray from a point of the spine outwards.
+/// A ray from a point on the spine outwards, which meets the surface of the head at one vertex.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
 }
 
-/// The spine from crown to base. Each row is a fraction of the parallels, the height of a ray's origin, and its degrees
-/// below the horizon.
+/// Origins and inclinations of rays from crown to base. Each row has a fraction of the parallels, the height of the
+/// origin, and the degrees below the horizon.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
@@ -107,8 +108,8 @@ const SPINE: [(f64, f64, f64); 8] = [
 ];
 
 impl Ray {
-    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is in turns from the back, and rays are
-    /// denser in front.
+    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is the fraction of a turn from the back
+    /// of the head. Rays are denser at the face.
     fn new(down: f64, round: f64) -> Self {
         // Interpolate origin and inclination between two rows of the spine.
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
@@ -125,8 +126,8 @@ impl Ray {
         }
     }
 
-    /// Returns the outermost point of the surface on the ray. The search steps inwards until it is inside and then
-    /// bisects the last step.
+    /// Returns the outermost point of the surface on the ray. The search steps inwards from outside until it is inside
+    /// the head, and then bisects the last step.
     fn hit(&self) -> DVec3 {
         let mut outside = 24.0;
         let mut inside = 24.0;
@@ -155,12 +156,13 @@ impl Ray {
     }
 }
 
-/// Interpolates linearly between `a` at 0 and `b` at 1.
+/// Returns `a` for `t` = 0, `b` for `t` = 1, and interpolates linearly in between.
 fn between(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Returns the colour of a point. Layers of paint have soft edges, because the grid is too coarse for hard edges.
+/// Returns the colour of a point on the head. Painted patches have soft edges, because the grid of vertices is too
+/// coarse for hard edges.
 fn colour(point: DVec3) -> Colour {
     // The head is symmetric, so one half is enough.
     let p = DVec3::new(point.x.abs(), point.y, point.z);
@@ -184,9 +186,10 @@ fn colour(point: DVec3) -> Colour {
     })
 }
 
-// Each mask below returns the approximate distance in centimetres of a point outside the painted patch.
+// Each function below returns the approximate distance of a point from a painted patch, in centimetres, positive
+// outside.
 
-/// Returns the distance from the axis of the gaze, which is slightly lowered.
+/// Returns the distance of a point from the axis of the gaze, which is slightly lowered, in centimetres.
 fn off_axis(p: DVec3) -> f64 {
     DVec3::new(p.x - EYE.x, p.y - EYE.y + 0.05, 0.0).length()
 }
@@ -197,7 +200,7 @@ fn lips(p: DVec3) -> f64 {
     ((p.y + 5.85).abs() - half_height).max(7.0 - p.z)
 }
 
-/// Returns the mask of an eyebrow: an arch that becomes thinner outwards.
+/// Returns the distance of a point from a painted eyebrow, an arch that becomes thinner outwards, in centimetres.
 fn brow(p: DVec3) -> f64 {
     let off_middle = (p.x - 3.2) / 2.0;
     let middle = 2.5 + 0.3 * (1.0 - off_middle * off_middle);
@@ -206,8 +209,8 @@ fn brow(p: DVec3) -> f64 {
     ((p.y - middle).abs() - half_height).max(end).max(5.0 - p.z)
 }
 
-/// Returns the mask of the hair, whose border runs from the forehead over the temples, in front of and around the ears,
-/// to the nape.
+/// Returns the distance of a point from the hair, in centimetres. The border of the hair runs from the forehead over
+/// the temples, around the ears and to the nape.
 fn hair(p: DVec3) -> f64 {
     let hairline = 8.2 - 0.05 * p.x * p.x;
     let behind = p.z - 2.0 + (hairline - p.y).max(0.0) * 0.3;

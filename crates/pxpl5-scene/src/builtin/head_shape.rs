@@ -1,9 +1,9 @@
 //! The shape of a human head as a signed distance function in centimetres. +x is the left of the head, +y is up, +z is
 //! the face.
 //!
-//! The distance is negative inside. Proportions follow the usual rules of drawing. The eyes are half-way between crown
-//! and chin, the face is five eyes wide, and the ears reach from brow to nose. The functions use only arithmetic and
-//! square roots, so all hosts agree.
+//! The distance is negative inside the head. Proportions follow the usual rules of drawing. The eyes are half-way
+//! between crown and chin, the face is five eyes wide, and the ears reach from brow to nose. The functions use only
+//! arithmetic and square roots, so all hosts agree.
 
 use glam::DVec3;
 
@@ -15,8 +15,8 @@ const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
 pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
-/// Returns the signed distance of a point from the head, symmetric in x. Near the surface the error is about a tenth of
-/// the distance.
+/// Returns the signed distance of a point from the surface of the head, centimetres. The head is symmetric in x. Near
+/// the surface the error is about a tenth of the distance.
 pub(super) fn distance(point: DVec3) -> f64 {
     let p = xyz(point.x.abs(), point.y, point.z);
     let mut d = skull(p);
@@ -42,7 +42,7 @@ fn neck(p: DVec3) -> f64 {
     let shoulders = capsule(p, xyz(0.0, -18.2, -3.8), xyz(6.0, -19.6, -4.4), 4.6, 3.4);
     let throat = ellipsoid(p, xyz(0.0, -12.4, 1.7), xyz(1.0, 1.5, 0.9));
     let d = join(join(column, shoulders, 3.0), throat, 1.5);
-    // Cut off level at the bottom, with a soft edge.
+    // Cut off the neck horizontally at the bottom, with a soft edge.
     meet(d, -18.0 - p.y, 1.2)
 }
 
@@ -53,7 +53,7 @@ fn nose(p: DVec3) -> f64 {
     join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
-/// Adds brows, eye sockets, eyes, cheekbones and mouth to the distance `d` of skull, neck and nose.
+/// Returns the distance `d` from skull, neck and nose, extended by brows, eye sockets, eyes, cheekbones and mouth.
 fn face(d: f64, p: DVec3) -> f64 {
     let brow = capsule(p, xyz(1.3, 2.2, 7.7), xyz(5.0, 2.3, 5.9), 0.75, 0.5);
     let cheekbone = ellipsoid(p, xyz(4.0, -2.4, 4.9), xyz(1.9, 1.4, 1.9));
@@ -65,7 +65,7 @@ fn face(d: f64, p: DVec3) -> f64 {
     mouth(d, p)
 }
 
-/// Returns the distance to the eyelids: a shell around the eyeball with a slit.
+/// Returns the distance of a point from the eyelids, a shell around the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
     let slit = ellipsoid(p, xyz(3.2, 0.65, 8.4), xyz(1.5, 0.5, 1.9));
@@ -84,10 +84,11 @@ fn mouth(d: f64, p: DVec3) -> f64 {
     carve(d, parting, 0.25)
 }
 
-/// Adds an ear: a bowl whose front edge lies on the skull and whose rear edge stands away from it.
+/// Returns the distance `d` extended by the ears. Each is a bowl whose front edge lies on the skull and whose rear edge
+/// stands away from the skull.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
-    // The ear leans back, so its top is further behind than its lobe. The rear of the ear is turned outwards.
+    // The ear leans back, so its top is further behind than its lobe. Its rear edge is turned outwards.
     let q = xyz(q.x + 0.45 * q.z, q.y + 0.22 * q.z, q.z + 0.22 * q.y);
     let flap = ellipsoid(q, xyz(0.2, 0.0, 0.0), xyz(0.75, 3.1, 1.75));
     let bowl = ellipsoid(q, xyz(1.05, 0.35, 0.25), xyz(0.75, 2.1, 1.0));
@@ -96,23 +97,26 @@ fn ears(d: f64, p: DVec3) -> f64 {
     join(d, ear, 0.45)
 }
 
-/// Returns the distance to the union of two solids, with a fillet of width `k`.
+/// Returns the distance from the union of two solids, given the distances `a` and `b` from each. The edge between them
+/// is rounded over a width `k`.
 fn join(a: f64, b: f64, k: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k / 4.0
 }
 
-/// Returns the distance to the intersection of two solids, with a fillet of width `k`.
+/// Returns the distance from the intersection of two solids, given the distances `a` and `b` from each. The edge
+/// between them is rounded over a width `k`.
 fn meet(a: f64, b: f64, k: f64) -> f64 {
     -join(-a, -b, k)
 }
 
-/// Returns the distance to `a` without `b`, with a fillet of width `k`.
+/// Returns the distance from the first solid without the second, given the distances `a` and `b` from each. The edge
+/// between them is rounded over a width `k`.
 fn carve(a: f64, b: f64, k: f64) -> f64 {
     meet(a, -b, k)
 }
 
-/// Returns a first-order estimate of the distance to an ellipsoid, which is exact at the surface.
+/// Returns a first-order estimate of the distance from an ellipsoid. The estimate is exact at the surface.
 fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     let scaled = (p - centre) / radii;
     let reach = scaled.length();
@@ -120,7 +124,8 @@ fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     if slope > 0.0 { reach * (reach - 1.0) / slope } else { -radii.min_element() }
 }
 
-/// Returns the distance to a capsule whose radius changes linearly from `from` to `to` along a segment.
+/// Returns the distance from a rounded rod along a segment, whose radius changes linearly from `from` at `a` to `to` at
+/// `b`.
 fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
     let ap = p - a;
     let ab = b - a;
@@ -128,7 +133,7 @@ fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
     (ap - ab * t).length() - (from + (to - from) * t)
 }
 
-/// Returns the outward unit normal, computed from central differences of the distance.
+/// Returns the outward unit normal at a point, computed from central differences of the distance function.
 pub(super) fn normal(p: DVec3) -> DVec3 {
     const STEP: f64 = 0.02;
     let differences = DVec3::AXES.map(|axis| distance(p + axis * STEP) - distance(p - axis * STEP));

@@ -21,7 +21,8 @@ const DUCT: Colour = [70, 66, 66];
 const GLASS: Colour = [90, 170, 226];
 const STEEL: Colour = [140, 136, 132];
 
-/// Radius of the finished model, metres. Assumed, 0.5 to 8. A flight around it passes at several metres per second.
+/// Radius to which the finished aircraft is scaled, metres. Assumed, 0.5 to 8. A flight around this aircraft passes at
+/// several metres per second.
 pub(super) const RADIUS_M: f64 = 2.0;
 
 const SIDES: usize = 14;
@@ -47,7 +48,7 @@ pub(super) fn scene() -> Scene {
     finish(solid)
 }
 
-/// Scales the aircraft and its hinges to [`RADIUS_M`] about the origin, and makes a scene.
+/// Moves the aircraft and its hinges to the origin, scales them to [`RADIUS_M`], and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
     // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
@@ -72,8 +73,8 @@ fn finish(mut solid: Solid) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Returns a motion around the aircraft. The nearest point is within the span of the wings, where the aircraft
-/// overflows the view. The farthest point is five radii away, where the aircraft appears small.
+/// Returns the motion of a head around the aircraft. The nearest point is within the span of the wings, where the
+/// aircraft overflows the view. The farthest point is five radii away, where the aircraft appears small.
 pub(super) fn fly_through() -> HeadMotion {
     let path = HeadPath::FlyThrough {
         target: glam::Vec3::ZERO,
@@ -84,8 +85,8 @@ pub(super) fn fly_through() -> HeadMotion {
     HeadMotion::new(path, Sway { seed: 1, scale: 1.0 }).expect("pxpl5-scene: constants are in range")
 }
 
-/// Returns a closed cross-section of the fuselage: an ellipse at height `y` and station `z`, anticlockwise seen from
-/// the nose.
+/// Returns a closed cross-section of the fuselage: an ellipse at height `y` and at `z` along the fuselage. Its points
+/// run anticlockwise seen from the nose.
 fn ring(z: f64, y: f64, width: f64, height: f64) -> Vec<DVec3> {
     let points = (0..SIDES).map(|i| {
         let turns = (i as f64 + 0.5) / SIDES as f64;
@@ -124,13 +125,13 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// Returns the same section seen from its other side.
+/// Returns the same cross-section with its points in reverse order, as seen from its other side.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
 }
 
-/// A cross-section of a lifting surface: leading edge, trailing edge, and half the thickness.
+/// A cross-section of a wing or fin: leading edge, trailing edge, and half the thickness.
 struct Cut {
     leading: DVec3,
     trailing: DVec3,
@@ -147,27 +148,28 @@ impl Cut {
         self.leading.lerp(self.trailing, 0.38)
     }
 
-    /// Returns the corners of a diamond: leading edge, upper side, trailing edge, lower side.
+    /// Returns the four corners of a pointed cross-section: leading edge, upper side, trailing edge, lower side.
     fn diamond(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         vec![self.leading, middle + self.thickness, self.trailing, middle - self.thickness]
     }
 
-    /// Returns the corners of a diamond with a blunt trailing edge.
+    /// Returns the corners of a cross-section that ends in a flat (blunt) trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 
-    /// Returns a wedge of this chord that begins at the blunt trailing edge.
+    /// Returns a wedge of length `chord` that begins at the blunt trailing edge and continues the cross-section.
     fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
         let edge = self.thickness * 0.3;
         vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]
     }
 }
 
-/// Adds a lifting surface from sections that run from root to tip. A surface on the right side needs `turned` sections.
+/// Adds a wing or fin between cross-sections that run from root to tip. A surface on the right side needs `turned`
+/// cross-sections, in reverse order of points.
 fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: Colour, tip: Colour) {
     let sections: Vec<Vec<DVec3>> = if turned { sections.into_iter().map(reversed).collect() } else { sections };
     let first = solid.mesh.positions.len();
@@ -184,10 +186,11 @@ fn same_span(a: DVec3, b: DVec3) -> bool {
     (a.x.abs() - b.x.abs()).abs() < 0.01 && (a.y - b.y).abs() < 0.1
 }
 
-// Stations of the wing from root to tip: span x, z of the leading edge, chord.
+// Cross-sections of the wing from root to tip: span x, z of the leading edge, chord.
 const WING_SWEEP: [(f64, f64, f64); 3] = [(0.5, 2.3, 3.1), (2.9, -0.15, 2.25), (4.9, -2.35, 1.45)];
 
-/// Returns the cross-section of the wing at a station. The wing is lowered slightly towards its tip (anhedral).
+/// Returns the cross-section of the wing with index `station`, counted from the root. The wing is slightly lower at its
+/// tip (anhedral).
 fn wing_cut(side: f64, station: usize) -> Cut {
     let (x, z, chord) = WING_SWEEP[station];
     Cut::new([side * x, -0.05 - 0.05 * x, z], chord, [0.0, 0.17 - 0.026 * x, 0.0])
@@ -198,8 +201,8 @@ fn wing(solid: &mut Solid, side: f64) {
     surface(solid, sections, side < 0.0, SILVER, RED);
 }
 
-/// Adds a wedge behind a blunt edge that runs from `root` to `tip`. Returns a point and the direction of its hinge,
-/// which is this edge.
+/// Adds a control surface: a wedge behind the blunt edge that runs from `root` to `tip`. Returns a point and the
+/// direction of its hinge, which is this edge.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {
@@ -246,7 +249,7 @@ fn ventral_fin(solid: &mut Solid) {
     surface(solid, vec![root.diamond(), tip.diamond()], false, BELLY, BELLY);
 }
 
-/// Returns five points of half an ellipse above height `base` at station `z`.
+/// Returns five points on the upper half of an ellipse with centre height `base`, at `z` along the fuselage.
 fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     [0.0, 1.0, 2.0, 3.0, 4.0].map(|eighths| {
         let turns = eighths / 8.0;
@@ -254,7 +257,7 @@ fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     })
 }
 
-/// Adds a canopy of three arches between two points: 4 + 8 + 8 + 4 triangles.
+/// Adds a canopy of three arches between a front point and a back point: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
     let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
     let back = DVec3::new(0.0, 0.88, -0.6);

@@ -1,4 +1,4 @@
-//! The built-in scenes. Code generates them, so they are the same on every host.
+//! The built-in scenes. Code generates all of them, so they are the same on every host.
 
 mod aircraft;
 mod full_screen;
@@ -52,7 +52,7 @@ const FULL_SCREEN: &str = "full-screen:N";
 const TYPICAL: &str = "typical:N";
 const SPHERE: &str = "sphere:N";
 
-/// Returns the names of all built-in scenes, each with a description of one sentence. N stands for a number of
+/// Returns the names of all built-in scenes, each with a one-sentence description. In a name, N stands for a number of
 /// triangles up to [`MAX_TRIANGLES`].
 #[must_use]
 pub fn names() -> &'static [(&'static str, &'static str)] {
@@ -77,7 +77,7 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
     }
 }
 
-/// Generates a scene whose name contains a number.
+/// Generates a scene whose name contains a number of triangles, such as `sphere:80`.
 fn counted(name: &str) -> Result<Scene, SceneError> {
     match name.split_once(':') {
         Some(("full-screen", count)) => Ok(full_screen::scene(triangles(FULL_SCREEN, count, 1)?)),
@@ -90,7 +90,7 @@ fn counted(name: &str) -> Result<Scene, SceneError> {
     }
 }
 
-/// Parses the number of triangles in a scene's name.
+/// Parses the number of triangles in a scene's name, and checks that it lies between `least` and [`MAX_TRIANGLES`].
 fn triangles(scene: &'static str, count: &str, least: u32) -> Result<u32, SceneError> {
     let expected = || format!("from {least} to {MAX_TRIANGLES}");
     let number = count.parse().ok().filter(|n| (least..=MAX_TRIANGLES).contains(n));
@@ -108,13 +108,14 @@ fn unknown(name: &str) -> SceneError {
     }
 }
 
-/// Cuts a name to 40 characters, which is longer than any valid name. Message and comparison stay short.
+/// Cuts a name to 40 characters, so that an error message and the search for the nearest name stay short. All valid
+/// names are shorter.
 fn excerpt(name: &str) -> String {
     name.chars().take(40).collect()
 }
 
-/// Returns the Levenshtein distance: the number of insertions, deletions and replacements of characters from one word
-/// to the other.
+/// Returns the Levenshtein distance of two words: the number of characters to insert, delete or replace to turn one
+/// word into the other.
 fn edits(from: &str, to: &str) -> usize {
     let to: Vec<char> = to.chars().collect();
     // `row` holds the distances from the first i characters of `from` to every beginning of `to`.

@@ -1,6 +1,6 @@
-//! Myoglobin twice, as atoms and as a ribbon, and a water molecule.
+//! A scene of molecules: myoglobin as atoms, myoglobin as a ribbon, and a water molecule.
 //!
-//! The coordinates are Protein Data Bank entry 1MBN by H. C. Watson, 1969, unchanged in `assets/1mbn.pdb`.
+//! The coordinates of myoglobin are Protein Data Bank entry 1MBN by H. C. Watson, 1969, unchanged in `assets/1mbn.pdb`.
 
 use glam::DVec3;
 
@@ -12,14 +12,15 @@ use crate::scene::{Lighting, Scene, SceneParts, Sphere, bounding_sphere};
 
 static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
 
-/// Number of cross-sections of the ribbon: (2,620 triangles - 2 ends of 2) / 8 + 1.
+/// Number of cross-sections of the ribbon: (2,620 triangles - 2 for each of 2 ends) / 8 + 1.
 const SECTIONS: usize = 328;
 
-/// Half the distance between the centres of the two molecules, Ångström. The radius of each is about 25.
+/// Half the distance between the centres of the two myoglobin molecules, Ångström. Each has a radius of about 25.
 const APART: f64 = 25.0;
 
-/// Greatest distance between alpha carbons three residues apart in a helix, Ångström. The distance is 5.0 in an ideal
-/// alpha helix and above 8 in an extended chain (derived from rise 1.5, radius 2.3 and 100 degrees per residue).
+/// Greatest distance between alpha carbons three residues apart that counts as a helix, Ångström. The distance is 5.0
+/// in an ideal alpha helix and above 8 in an extended chain. Both are derived from a rise of 1.5 and 100 degrees per
+/// residue, at a radius of 2.3.
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
@@ -41,8 +42,8 @@ fn sphere(centre: DVec3, radius: f64, colour: Colour) -> Sphere {
     Sphere { centre: centre.as_vec3(), radius: radius as f32, colour }
 }
 
-/// Returns a water molecule: one oxygen and two hydrogens with bonds of 0.957 Ångström at 104.5 degrees. The molecule
-/// lies below and between the two myoglobins.
+/// Returns a water molecule, one oxygen and two hydrogens, below and between the two myoglobins. The bonds are 0.957
+/// Ångström long at 104.5 degrees.
 fn water() -> [Sphere; 3] {
     let oxygen = DVec3::new(0.0, -20.0, 6.0);
     // The offsets are 0.957 times sine and cosine of 52.25 degrees.
@@ -50,11 +51,11 @@ fn water() -> [Sphere; 3] {
     [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
-/// A residue of the protein's chain.
+/// A residue (amino acid) of the protein's chain, with the position and shape of the ribbon there.
 struct Residue {
     alpha: DVec3,
-    /// Direction from the carbonyl carbon to its oxygen. In a helix this is along the axis, so the ribbon lies flat on
-    /// the helix.
+    /// Direction across the ribbon, from the carbonyl carbon to its oxygen. In a helix this direction is parallel to
+    /// the axis, so the ribbon lies flat on the helix.
     across: DVec3,
     /// Half the width of the ribbon, Ångström.
     width: f64,
@@ -67,7 +68,7 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
     let mut across = DVec3::X;
     let mut residues = Vec::with_capacity(alphas.len());
     for (i, &alpha) in alphas.iter().enumerate() {
-        // Successive directions must not flip, or the ribbon would twist.
+        // Directions of successive residues must not flip, or the ribbon would twist.
         let mut direction = (oxygens[i] - carbons[i]).normalize_or(across);
         if direction.dot(across) < 0.0 {
             direction = -direction;
@@ -91,7 +92,8 @@ fn in_helix(alphas: &[DVec3], i: usize) -> bool {
     (first..=last.saturating_sub(3)).any(|j| (alphas[j + 3] - alphas[j]).length() < HELIX_STEP)
 }
 
-/// Builds a band of rectangular section along the chain, blue at its beginning and red at its end.
+/// Adds a ribbon with a rectangular cross-section along the chain. Its colour changes from blue at the beginning to red
+/// at the end.
 fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     let sections: Vec<Vec<DVec3>> = (0..SECTIONS).map(|i| section(chain, part_of_chain(i)).to_vec()).collect();
     let first = solid.mesh.positions.len();
@@ -107,12 +109,13 @@ fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     solid.face(&sections[SECTIONS - 1], rainbow(1.0));
 }
 
-/// Returns the position of a cross-section, from 0 at the chain's beginning to 1 at its end.
+/// Returns the position of a cross-section along the chain, as a fraction from 0 at the beginning to 1 at the end.
 fn part_of_chain(section: usize) -> f64 {
     section as f64 / (SECTIONS - 1) as f64
 }
 
-/// Returns the four corners of the ribbon at a position from 0 to 1 along the chain, anticlockwise seen from its end.
+/// Returns the four corners of the ribbon's cross-section at `place`, a fraction of the chain from 0 to 1. The corners
+/// run anticlockwise seen from the chain's end.
 fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     let along = place * (chain.len() - 1) as f64;
     let i = (along as usize).min(chain.len() - 2);
@@ -131,14 +134,15 @@ fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
 }
 
-/// Evaluates a uniform cubic B-spline. The spline passes near its points, which smooths the zigzag of a chain.
+/// Evaluates a uniform cubic B-spline. The spline passes near its points, not through them, which smooths the zigzag of
+/// a chain.
 fn spline(p: [DVec3; 4], t: f64) -> DVec3 {
     let u = 1.0 - t;
     let weights = [u * u * u, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * u * u * u - 6.0 * u * u + 4.0, t * t * t];
     p.iter().zip(weights).map(|(&p, w)| p * (w / 6.0)).sum()
 }
 
-/// Returns a colour of the sequence blue, cyan, green, yellow, red.
+/// Returns the colour at a fraction of the sequence blue, cyan, green, yellow, red.
 fn rainbow(place: f64) -> Colour {
     const STOPS: [[f64; 3]; 5] =
         [[40.0, 70.0, 240.0], [30.0, 200.0, 230.0], [50.0, 210.0, 70.0], [250.0, 220.0, 40.0], [235.0, 40.0, 40.0]];
@@ -168,7 +172,8 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        // The model is half as high as wide. Seen from nearer than a ball, it fills the width of the view.
+        // The molecules are half as high as wide, so the head can be nearer than it is to a ball. They then fill the
+        // width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
         path: Vec::new(),
     };

@@ -1,4 +1,4 @@
-//! Scenes of one structure that does not move. The head stands still unless the run chooses another motion.
+//! Scenes with a single structure that does not move. The head stands still unless a run chooses another motion.
 
 use glam::Vec3;
 
@@ -6,8 +6,8 @@ use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
 use crate::sway::Sway;
 
-/// Makes a scene with all triangles in one structure, fixed to the room or to the head. The head looks along -z from
-/// the origin.
+/// Makes a scene with all triangles in one structure, which is fixed to the room or to the head. The head is at the
+/// origin and looks along -z.
 pub(super) fn scene(
     name: &str,
     structure: &str,

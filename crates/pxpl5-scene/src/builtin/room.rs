@@ -6,11 +6,11 @@ use super::one_structure;
 use crate::import::Mesh;
 use crate::scene::{Frame, Scene};
 
-/// Distance of every wall from the viewer, metres. Assumed: large enough for a head to walk to and fro.
+/// Distance of every wall from the viewer, metres. Assumed: large enough for a viewer to walk to and fro.
 const WALL_M: f64 = 2.0;
 
-/// Returns the corners of a regular tetrahedron, three times as far away as its walls. The first corner is behind the
-/// viewer, so the wall of the other three is straight ahead.
+/// Returns the corners of the room, a regular tetrahedron. They are three times as far from the viewer as the walls.
+/// The first corner is behind the viewer, so the wall between the other three is straight ahead.
 fn corners() -> [DVec3; 4] {
     // The three corners of the wall ahead lie on a circle with a radius of sqrt(8) times the wall's distance.
     let ring = WALL_M * 8f64.sqrt();
@@ -24,7 +24,7 @@ fn corners() -> [DVec3; 4] {
     ]
 }
 
-/// Corners of each wall, anticlockwise seen from within, and colour of the wall.
+/// Indices of the corners of each wall, anticlockwise seen from inside, and the wall's colour.
 const WALLS: [([usize; 3], [u8; 3]); 4] =
     [([1, 2, 3], [200, 190, 160]), ([0, 2, 1], [150, 60, 60]), ([0, 1, 3], [60, 90, 150]), ([0, 3, 2], [90, 110, 70])];
 

@@ -10,7 +10,7 @@ use crate::scene::{Frame, Structure};
 
 pub(super) type Colour = [u8; 3];
 
-/// A mesh that grows part by part. Each part has its own normals.
+/// A mesh that is built from parts. Each part has its own normals.
 #[derive(Default)]
 pub(super) struct Solid {
     pub(super) mesh: Mesh,
@@ -18,7 +18,7 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// Ends the current structure, which holds everything added since the previous one.
+    /// Ends the current structure. It contains everything added since the end of the previous structure.
     pub(super) fn end_structure(&mut self, name: &str, hinge: Option<Hinge>) {
         let (vertex, triangle) = self.structures.last().map_or((0, 0), |s| (s.vertices.end, s.triangles.end));
         self.structures.push(Structure {
@@ -32,9 +32,11 @@ impl Solid {
         });
     }
 
-    /// Adds a skin between closed sections with the same number of points, with smooth normals in both directions.
+    /// Adds a surface between successive closed cross-sections with equal numbers of points. Its normals are smooth in
+    /// both directions.
     ///
-    /// The points run anticlockwise as seen from the last section. The skin has 2 x points x (sections - 1) triangles.
+    /// The points run anticlockwise as seen from the last cross-section. For n points and m cross-sections the surface
+    /// has 2 n (m - 1) triangles.
     pub(super) fn skin(&mut self, sections: &[Vec<DVec3>], colour: Colour) {
         let mut part = Mesh::default();
         for section in sections {
@@ -55,8 +57,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds one strip for each side of the sections. Normals are smooth along a strip, with sharp edges between the
-    /// strips.
+    /// Adds a band of surface for each side of the cross-sections. Normals are smooth along a band, and the edges
+    /// between bands are sharp.
     pub(super) fn plates(&mut self, sections: &[Vec<DVec3>], colour: Colour) {
         let sides = sections[0].len();
         for side in 0..sides {
@@ -66,7 +68,7 @@ impl Solid {
         }
     }
 
-    /// Adds quadrilaterals between successive rungs, with smooth normals along the strip.
+    /// Adds a band of quadrilaterals between successive pairs of points, with smooth normals along the band.
     pub(super) fn strip(&mut self, rungs: &[[DVec3; 2]], colour: Colour) {
         let mut part = Mesh::default();
         for &[left, right] in rungs {
@@ -79,7 +81,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds a flat polygon, anticlockwise seen from outside, as points - 2 triangles.
+    /// Adds a flat polygon, anticlockwise seen from outside, as a number of triangles that is the number of points
+    /// minus 2.
     pub(super) fn face(&mut self, points: &[DVec3], colour: Colour) {
         let mut part = Mesh::default();
         let corners: Vec<u32> = points.iter().map(|&p| part.push(p, DVec3::ZERO, colour)).collect();
@@ -87,8 +90,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds a cone from a closed section to a point, with one triangle for each point. The points run anticlockwise
-    /// seen from the tip.
+    /// Adds a cone from a closed cross-section to a tip, with one triangle for each point of the cross-section. The
+    /// points run anticlockwise seen from the tip.
     pub(super) fn cone(&mut self, section: &[DVec3], tip: DVec3, colour: Colour) {
         let mut part = Mesh::default();
         for &point in section {
@@ -102,7 +105,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// Repaints the vertices of `range` for which `chosen` returns true.
+    /// Changes the colour of those vertices in `range` for whose position `chosen` returns true.
     pub(super) fn paint(&mut self, range: Range<usize>, colour: Colour, chosen: impl Fn(DVec3) -> bool) {
         for vertex in range {
             if chosen(self.mesh.positions[vertex]) {

@@ -7,7 +7,8 @@ use crate::import::{Mesh, fitted_scene};
 use crate::scene::Scene;
 use crate::trig;
 
-/// Generates a sphere of `count` triangles. `count` is even and at least [`crate::config::LEAST_SPHERE_TRIANGLES`].
+/// Generates a sphere of `count` triangles. `count` must be even and at least
+/// [`crate::config::LEAST_SPHERE_TRIANGLES`].
 pub(super) fn scene(count: u32) -> Scene {
     // Add the parallels from pole to pole, and join each with the one above.
     let rings = rings(count);
@@ -31,9 +32,9 @@ struct Ring {
     points: u32,
 }
 
-/// Returns the number of points on each parallel. Between two parallels lie as many triangles as both have points
-/// together. Without the poles, there are therefore half as many points as triangles. These points are distributed by
-/// the length of the parallels.
+/// Returns the number of points on each parallel of a sphere with `count` triangles. Between two parallels lie as many
+/// triangles as the two have points together. The parallels between the poles therefore have half as many points as
+/// there are triangles. The points are distributed by the lengths of the parallels.
 fn rings(count: u32) -> Vec<u32> {
     // An equilateral triangle with side s has the area s^2 sqrt(3)/4, and rows of such triangles are s sqrt(3)/2 apart.
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();
@@ -42,7 +43,7 @@ fn rings(count: u32) -> Vec<u32> {
     let lengths: Vec<f64> =
         (1..=rings).map(|ring| trig::sin_turns(f64::from(ring) / f64::from(2 * (rings + 1)))).collect();
     let all: f64 = lengths.iter().sum();
-    // Rounding the running sum, not each share, keeps the total exact.
+    // The running sum is rounded, not each share, so that the total is exact.
     let mut points = Vec::with_capacity(lengths.len());
     let mut sum = 0.0;
     let mut given = 0;
@@ -59,7 +60,8 @@ fn push(mesh: &mut Mesh, direction: DVec3) -> u32 {
     mesh.push(direction * IMPORT_RADIUS_M, direction, DEFAULT_COLOUR)
 }
 
-/// Adds a parallel at the fraction `down` of the way from pole to pole.
+/// Adds the vertices of a parallel with `points` points. `down` is the fraction of the way from the upper to the lower
+/// pole.
 fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     let radius = trig::sin_turns(down / 2.0);
     let height = trig::cos_turns(down / 2.0);
@@ -70,7 +72,7 @@ fn push_ring(mesh: &mut Mesh, down: f64, points: u32) {
     }
 }
 
-/// Adds the triangles between a parallel and the next lower one. A pole is a parallel of one point.
+/// Adds the triangles between a parallel and the next lower parallel. A pole counts as a parallel of one point.
 fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     let steps = |ring: &Ring| if ring.points == 1 { 0 } else { ring.points };
     let [upper, lower] = [above, below].map(steps);

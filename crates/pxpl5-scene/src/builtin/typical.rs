@@ -1,4 +1,4 @@
-//! Triangles of the size that the papers call typical, fixed to the head.
+//! Triangles of the size that the papers call typical. They are fixed to the head.
 
 use glam::Vec3;
 
@@ -7,10 +7,10 @@ use crate::config::{DEFAULT_COLOUR, TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 use crate::scene::{Frame, Scene, Vertex};
 use crate::view::{Hmd, HmdConfig};
 
-/// Distance from the head, metres. Assumed: any value between the display's near and far planes.
+/// Distance of all triangles from the head, metres. Assumed: any value between the display's near and far planes.
 const DEPTH_M: f32 = 1.0;
 
-/// Generates right-angled triangles, spread evenly over the view.
+/// Generates a scene of right-angled triangles that are spread evenly over the view.
 pub(super) fn scene(count: u32) -> Scene {
     let hmd = Hmd::new(HmdConfig::unc()).expect("pxpl5-scene: the preset is in range");
     let pixel = DEPTH_M / hmd.focal_length_px() as f32;
@@ -21,8 +21,8 @@ pub(super) fn scene(count: u32) -> Scene {
     one_structure::scene(&name, &name, Frame::Head, vertices, triangles)
 }
 
-/// Returns the corners of a triangle. The additive recurrence of the plastic number spreads points evenly over the unit
-/// square, and 16 bits keep the recurrence exact.
+/// Returns the corners of triangle `i`. The triangles' positions follow the additive recurrence of the plastic number,
+/// which spreads points evenly over a square. Coordinates of 16 bits keep the recurrence exact.
 fn corners(i: u32, pixel: f32) -> [Vec3; 3] {
     let share = |step: u32| (i.wrapping_mul(step) >> 16) as f32 / 65_536.0;
     let [width, height] = TYPICAL_SPREAD_PX.map(|px| px as f32);

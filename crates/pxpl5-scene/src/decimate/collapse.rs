@@ -1,4 +1,4 @@
-//! The choice and the order of the edges to collapse.
+//! The choice of the edges to collapse during decimation, and their order.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -6,29 +6,31 @@ use std::collections::{BTreeSet, BinaryHeap};
 use super::quadric::Quadric;
 use super::surface::{Surface, is_degenerate};
 
-/// Least cosine of the angle by which a triangle may turn when one of its corners moves: at most 78 degrees. Assumed,
-/// 45 to 90 degrees.
+/// Least cosine of the angle by which a triangle may turn when one of its corners moves. The value allows 78 degrees.
+/// Assumed, 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// The rules of a pass that collapses edges.
+/// The rules of one pass over a surface that collapses edges.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
-    /// True if triangles may turn over.
+    /// True if a collapse may turn triangles over.
     pub(super) may_flip_triangles: bool,
-    /// True if fewer triangles than wanted may remain. Collapsing an edge inside a surface removes two triangles.
+    /// True if a collapse may leave fewer triangles than wanted. A collapse inside a surface removes two triangles at
+    /// once.
     pub(super) may_overshoot: bool,
 }
 
-/// A possible collapse of an edge: one end moves onto the other.
+/// A possible collapse of an edge, with its cost. One end of the edge moves onto the other end.
 struct Candidate {
     cost: f64,
     from: u32,
     onto: u32,
-    /// Number of changes of both points at the time when the cost was computed.
+    /// Numbers of changes that the two points had undergone when the cost was computed. If a point has changed again,
+    /// the cost is outdated.
     changes: [u32; 2],
 }
 
-/// Orders candidates by cost, the cheapest first. Equal costs are ordered by the numbers of the points, the lowest
+/// Orders candidates by cost, the cheapest first. Equal costs are ordered by the indices of the points, the lowest
 /// first.
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
@@ -51,7 +53,8 @@ impl PartialEq for Candidate {
 
 impl Eq for Candidate {}
 
-/// A surface during decimation, with the quadric and the number of changes of each point.
+/// A surface during decimation. For each point it has the quadric, which measures the error of moving the point, and
+/// the number of changes.
 pub(super) struct Decimator<'s, 'a> {
     surface: &'s mut Surface<'a>,
     quadrics: Vec<Quadric>,
@@ -72,7 +75,8 @@ impl<'s, 'a> Decimator<'s, 'a> {
                 let ends = [corners[side], corners[(side + 1) % 3]];
                 let places = ends.map(|point| surface.places[point as usize]);
                 let along = places[1] - places[0];
-                // A border edge gets a wall perpendicular to the surface, so that moving the border costs.
+                // An edge at a border gets an imaginary plane perpendicular to the surface, so that moving the border
+                // has a cost.
                 if surface.triangles_at(ends[0], ends[1]) != 2
                     && let Some(across) = along.cross(normal).try_normalize()
                 {
@@ -84,7 +88,7 @@ impl<'s, 'a> Decimator<'s, 'a> {
         Self { surface, quadrics, changes: vec![0; points] }
     }
 
-    /// Collapses edges, the cheapest first, until `wanted` triangles remain or no edge can be collapsed.
+    /// Collapses edges, the cheapest first. It ends when `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;
@@ -105,13 +109,13 @@ impl<'s, 'a> Decimator<'s, 'a> {
                 return;
             }
             let Candidate { from, onto, changes, .. } = candidate;
-            // An outdated cost is dropped: a newer candidate for these points is in the queue.
+            // Drop an outdated cost. A newer candidate for these points is in the queue.
             let is_current = changes == [self.changes[from as usize], self.changes[onto as usize]];
             if !is_current || !self.may_collapse(from, onto, wanted, rules) {
                 continue;
             }
             self.surface.collapse(from, onto);
-            // The remaining point takes over the quadric, and all costs around it are renewed.
+            // The remaining point adds the removed point's quadric to its own. All costs around it are computed again.
             let moved = self.quadrics[from as usize];
             self.quadrics[onto as usize] += moved;
             self.changes[from as usize] += 1;
@@ -123,7 +127,7 @@ impl<'s, 'a> Decimator<'s, 'a> {
         }
     }
 
-    /// Adds the collapses of all edges at a point to the queue.
+    /// Adds to the queue the collapses of all edges at a point.
     fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {
         queue.extend(self.surface.neighbours(point).into_iter().map(|onto| self.candidate(point, onto)));
     }
@@ -134,8 +138,8 @@ impl<'s, 'a> Decimator<'s, 'a> {
         Candidate { cost, from, onto, changes: [from, onto].map(|point| self.changes[point as usize]) }
     }
 
-    /// Returns true if a collapse keeps the surface intact: nothing closed opens, no triangle is doubled, no piece
-    /// vanishes.
+    /// Returns true if a collapse keeps the surface intact. A closed surface stays closed, no triangle occurs twice,
+    /// and no connected piece vanishes.
     fn may_collapse(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
         let surface = &self.surface;
         let (going, staying): (Vec<_>, Vec<_>) = surface.round(from).partition(|(_, points)| points.contains(&onto));
@@ -143,8 +147,8 @@ impl<'s, 'a> Decimator<'s, 'a> {
         if going.is_empty() || (leaves_too_few && !rules.may_overshoot) {
             return false;
         }
-        // The collapse must remove the two points' common neighbours exactly once, or the surface would fold onto
-        // itself.
+        // Both points may have common neighbours only at the triangles that the collapse removes. Otherwise the surface
+        // would fold onto itself.
         let opposite: BTreeSet<u32> =
             going.iter().flat_map(|(_, points)| *points).filter(|point| ![from, onto].contains(point)).collect();
         let own = surface.neighbours(from);
@@ -156,15 +160,16 @@ impl<'s, 'a> Decimator<'s, 'a> {
         staying.iter().all(|(_, points)| self.may_move(*points, from, onto, rules.may_flip_triangles))
     }
 
-    /// Returns true if the borders stay in place. A point on a border may move only along it. A point where borders
-    /// meet must not move.
+    /// Returns true if a collapse keeps the borders of the surface in place. A point on a border may move only along
+    /// the border. A point where borders meet must not move.
     fn keeps_borders(&self, from: u32, onto: u32, neighbours: &BTreeSet<u32>) -> bool {
         let on_border = |other: &&u32| self.surface.triangles_at(from, **other) != 2;
         let borders: Vec<u32> = neighbours.iter().filter(on_border).copied().collect();
         borders.is_empty() || (borders.len() == 2 && borders.contains(&onto))
     }
 
-    /// Returns true if a triangle survives the move of one of its points: it is neither doubled nor folded over.
+    /// Returns true if a triangle is still valid after one of its points moves: it equals no other triangle and is not
+    /// folded over.
     fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_flip_triangles: bool) -> bool {
         let moved = points.map(|point| if point == from { onto } else { point });
         let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));

@@ -1,11 +1,11 @@
-//! Decimation: fewer primitives for the same shape.
+//! Decimation, which reduces the number of primitives and keeps the shape.
 //!
 //! The algorithm collapses edges, the cheapest first by the quadric error metric (Garland and Heckbert, SIGGRAPH 97).
 //! Each edge collapses onto one of its ends, so every remaining vertex keeps its position, normal and colour. A closed
 //! surface stays closed.
 //!
-//! When no edge can be collapsed, whole pieces are removed, the smallest first. When one piece is left, its smallest
-//! triangles are removed. Spheres have no edges. Some of them are left out, evenly over their order.
+//! When no edge can be collapsed, whole connected pieces are removed, the smallest first. When one piece is left, its
+//! smallest triangles are removed. Spheres have no edges. Some of them are removed, evenly over their order.
 
 mod collapse;
 mod quadric;
@@ -21,10 +21,10 @@ use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
     /// Returns the same scene with at most `n` primitives, and as many as its surfaces allow. A closed surface has an
-    /// even number of triangles, so an odd number may be missed by one. The proportion of spheres and triangles stays
-    /// the same.
+    /// even number of triangles, so the result can have one primitive less than an odd `n`. The ratio of spheres to
+    /// triangles stays the same.
     ///
-    /// Structures without primitives are left out together with their edits. The same scene and number give the same
+    /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.
     ///
     /// # Errors
@@ -50,15 +50,16 @@ impl Scene {
     }
 }
 
-/// Returns true if an item belongs to the `kept` items that are spread evenly over `all` items.
+/// Returns true if item `index` of `all` items is among the `kept` ones. The kept items are spread evenly.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
 
-/// Returns the corners of each remaining triangle, or `None` for a removed one. At most `wanted` triangles remain.
+/// Returns the vertices of each remaining triangle, or `None` for a removed triangle. At most `wanted` triangles
+/// remain.
 fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     let mut surface = Surface::new(scene);
-    // Later passes allow more damage: first too few triangles, then folded ones.
+    // Later passes allow more damage: the second too few triangles, the third also folded triangles.
     let mut collapsing = Decimator::new(&mut surface);
     let passes = [(false, false), (false, true), (true, true)];
     for (may_flip_triangles, may_overshoot) in passes {
@@ -69,7 +70,7 @@ fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     surface.triangles
 }
 
-/// Removes whole pieces, the smallest first, until `wanted` triangles or one piece remain.
+/// Removes whole connected pieces, the smallest first. It ends when `wanted` triangles or a single piece remain.
 fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     if surface.left <= wanted {
         return;
@@ -86,7 +87,7 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     }
 }
 
-/// Removes the smallest triangles, if no edge can be collapsed and only one piece is left.
+/// Removes the smallest triangles until `wanted` remain. This is the last resort, after all other passes.
 fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -94,7 +95,8 @@ fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     smallest_first(&areas).into_iter().take(excess).for_each(|index| remove(surface, left[index]));
 }
 
-/// Returns indices by rising area. Areas that agree to a thousandth get an order that spreads evenly over the surface.
+/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal, and their
+/// order spreads evenly over the surface.
 fn smallest_first(areas: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..areas.len()).collect();
     // The key is the exponent and ten bits of the fraction, followed by the bits of the index in reverse order.
@@ -112,14 +114,14 @@ fn remove(surface: &mut Surface<'_>, triangle: u32) {
     }
 }
 
-/// The primitives that remain after decimation.
+/// The triangles and spheres that remain after decimation.
 struct Kept {
     triangles: Vec<Option<[u32; 3]>>,
     spheres: Vec<bool>,
 }
 
 impl Kept {
-    /// Returns the parts of a scene without removed primitives, unused vertices and empty structures.
+    /// Returns the parts of the scene that remain, without unused vertices and empty structures.
     fn of(self, mut parts: SceneParts) -> SceneParts {
         // Count how many items remain before each index: these are the new indices.
         let mut used = vec![false; parts.vertices.len()];
@@ -144,7 +146,7 @@ impl Kept {
     }
 }
 
-/// Returns the number of kept items before each index, followed by the total.
+/// Returns the number of kept items before each index. The last element is the total.
 fn counts_before(kept: &[bool]) -> Vec<usize> {
     let mut count = 0;
     let mut counts = vec![0];

@@ -1,22 +1,25 @@
-//! Quadric error metric (Garland and Heckbert, SIGGRAPH 97): the weighted sum of squared distances to planes.
+//! The quadric error metric (Garland and Heckbert, SIGGRAPH 97). It measures the weighted sum of squared distances from
+//! a point to planes.
 
 use std::ops::{Add, AddAssign};
 
 use glam::DVec3;
 
-/// A symmetric quadratic form: the sum over planes of weight x (normal . p + offset)^2.
+/// A weighted sum of squared distances to planes, as a function of a point p: the sum of weight x (normal . p +
+/// offset)^2.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Quadric {
-    /// Upper triangle of the sum of weight x normal normal^T, in the order xx, xy, xz, yy, yz, zz.
+    /// Coefficients of second degree: the upper triangle of the sum of weight x normal normal^T, in the order xx, xy,
+    /// xz, yy, yz, zz.
     squares: [f64; 6],
-    /// Sum of weight x offset x normal.
+    /// Coefficients of first degree, halved: the sum of weight x offset x normal.
     linear: DVec3,
-    /// Sum of weight x offset^2.
+    /// Constant term: the sum of weight x offset^2.
     constant: f64,
 }
 
 impl Quadric {
-    /// Returns `weight` times the squared distance to the plane through `point` with the unit normal `normal`.
+    /// Returns the squared distance, times `weight`, from the plane through `point` with the unit normal `normal`.
     pub(super) fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let offset = -normal.dot(point);
         let [x, y, z] = normal.to_array();
@@ -24,7 +27,8 @@ impl Quadric {
         Self { squares, linear: normal * (weight * offset), constant: weight * offset * offset }
     }
 
-    /// Returns the weighted sum of squared distances at a point. Negative values by rounding are raised to zero.
+    /// Returns the weighted sum of squared distances at the point `p`. A result that is negative by rounding becomes
+    /// zero.
     pub(super) fn at(&self, p: DVec3) -> f64 {
         let [xx, xy, xz, yy, yz, zz] = self.squares;
         let turned =

@@ -1,4 +1,4 @@
-//! A surface whose edges can be collapsed. Triangles connect points, and vertices at one position share a point.
+//! A surface whose edges can be collapsed. Its triangles connect points. All vertices at one position share one point.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,16 +6,16 @@ use glam::DVec3;
 
 use crate::scene::{Scene, Vertex};
 
-/// The triangles of a scene during decimation. A point is a distinct position of the vertices of one structure.
+/// The triangles of a scene during decimation. Each distinct position of a structure's vertices is one point.
 pub(super) struct Surface<'a> {
     vertices: &'a [Vertex],
     /// Position of each point.
     pub(super) places: Vec<DVec3>,
-    /// Point of each vertex.
+    /// Index of the point at which each vertex lies.
     point_of: Vec<u32>,
-    /// Vertices at each point.
+    /// Indices of the vertices at each point.
     vertices_on: Vec<Vec<u32>>,
-    /// Vertices at the corners of each triangle, or `None` for a removed triangle.
+    /// Indices of the three vertices of each triangle, or `None` for a removed triangle.
     pub(super) triangles: Vec<Option<[u32; 3]>>,
     /// Indices of the remaining triangles around each point.
     around: Vec<Vec<u32>>,
@@ -24,8 +24,8 @@ pub(super) struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// Creates a surface of all triangles of a scene. Triangles with two corners at one point cover nothing and are
-    /// left out.
+    /// Creates a surface of all triangles of a scene. Triangles with two corners at one point have no area and are left
+    /// out.
     pub(super) fn new(scene: &'a Scene) -> Self {
         let vertices = scene.vertices();
         let mut surface = Self {
@@ -53,7 +53,7 @@ impl<'a> Surface<'a> {
         let mut points: BTreeMap<[u32; 3], u32> = BTreeMap::new();
         for vertex in vertices {
             let position = self.vertices[vertex].position;
-            // Adding zero turns -0 into +0, so that both have one key.
+            // Adding zero turns -0 into +0, so both get the same key.
             let key = position.to_array().map(|x| (x + 0.0).to_bits());
             let point = *points.entry(key).or_insert_with(|| {
                 self.places.push(position.as_dvec3());
@@ -75,13 +75,13 @@ impl<'a> Surface<'a> {
         points.iter().for_each(|point| self.around[*point as usize].push(triangle));
     }
 
-    /// Returns the points of a triangle, or `None` if the triangle was removed.
+    /// Returns the three points of a triangle, or `None` if the triangle was removed.
     pub(super) fn points(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.triangles[triangle as usize]?;
         Some(corners.map(|vertex| self.point_of[vertex as usize]))
     }
 
-    /// Returns every remaining triangle with its points.
+    /// Returns every remaining triangle with its three points.
     pub(super) fn all(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
         (0..self.triangles.len() as u32).filter_map(|triangle| Some((triangle, self.points(triangle)?)))
     }
@@ -92,29 +92,30 @@ impl<'a> Surface<'a> {
         triangles.filter_map(|triangle| Some((*triangle, self.points(*triangle)?)))
     }
 
-    /// Returns the points connected to a point by an edge, in ascending order.
+    /// Returns the points that an edge connects to this point, in ascending order.
     pub(super) fn neighbours(&self, point: u32) -> BTreeSet<u32> {
         let joined = self.round(point).flat_map(|(_, points)| points);
         joined.filter(|other| *other != point).collect()
     }
 
-    /// Returns the number of triangles at an edge: two inside a surface, one at its border.
+    /// Returns the number of triangles at an edge: two inside a surface, and one at the border of a surface.
     pub(super) fn triangles_at(&self, a: u32, b: u32) -> usize {
         self.round(a).filter(|(_, points)| points.contains(&b)).count()
     }
 
-    /// Returns the normal of a triangle of points, with a length of twice the triangle's area.
+    /// Returns the normal of the triangle with these three points. Its length is twice the triangle's area.
     pub(super) fn normal(&self, points: [u32; 3]) -> DVec3 {
         let [a, b, c] = points.map(|point| self.places[point as usize]);
         (b - a).cross(c - a)
     }
 
-    /// Moves one point onto another. Triangles with both points are removed, and the others follow the point.
+    /// Moves the point `from` onto the point `onto`. Triangles at both points are removed. The other triangles at
+    /// `from` now end at `onto`.
     pub(super) fn collapse(&mut self, from: u32, onto: u32) {
         let moved: Vec<(u32, [u32; 3])> = self.round(from).collect();
         self.around[from as usize].clear();
         for (triangle, points) in moved {
-            // A triangle with both points loses its area. Others get a vertex at the new point.
+            // A triangle at both points loses its area and is removed. Other triangles get a vertex at the new point.
             if points.contains(&onto) {
                 self.remove(triangle, points);
             } else if let Some(corners) = self.triangles[triangle as usize] {
@@ -145,7 +146,7 @@ impl<'a> Surface<'a> {
         best.copied().unwrap_or(vertex)
     }
 
-    /// Returns the connected pieces of the surface, each as its triangles in ascending order.
+    /// Returns the connected pieces of the surface. Each piece is a list of its triangles in ascending order.
     pub(super) fn pieces(&self) -> Vec<Vec<u32>> {
         let mut pieces: Vec<Vec<u32>> = Vec::new();
         let mut met = vec![false; self.triangles.len()];

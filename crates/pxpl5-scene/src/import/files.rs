@@ -1,4 +1,4 @@
-//! Models from the host's files. Only this module of the crate calls the operating system.
+//! Reading of model files on the host's disk. Only this module of the crate calls the operating system.
 #![cfg(feature = "files")]
 
 use std::fs::{self, File};
@@ -8,19 +8,19 @@ use super::{Format, Placement, read_placed};
 use crate::error::LoadError;
 use crate::scene::Scene;
 
-/// Loads a model file. The extension determines the format.
+/// Loads a model file. The extension of the path determines the format.
 ///
 /// [`crate::from_bytes`] describes the conversion into a scene.
 ///
 /// # Errors
 ///
-/// [`LoadError::Io`], [`LoadError::NotAFile`] and [`LoadError::UnknownFormat`] for a path that leads to no model, and
-/// all errors of [`crate::from_bytes`].
+/// [`LoadError::Io`], [`LoadError::NotAFile`] or [`LoadError::UnknownFormat`] if the path does not lead to a model
+/// file. All errors of [`crate::from_bytes`] can also occur.
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
     load_placed(path, Placement::Fitted)
 }
 
-/// Loads a model file as [`load`] does, with the model at the position that `placement` selects.
+/// Loads a model file as [`load`] does. `placement` determines position and size of the model.
 ///
 /// # Errors
 ///
@@ -42,7 +42,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
     read_placed(opened, metadata.len(), format, &file, placement)
 }
 
-/// Returns the most helpful error for a path without a known extension.
+/// Returns the most helpful error for a path that has no known extension.
 fn error_of_path(path: &Path, file: String) -> LoadError {
     match fs::metadata(path) {
         Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },

@@ -1,5 +1,5 @@
-//! Meshes of the built-in models in double precision, and functions for all models: triangle fans, normals, and fitting
-//! into the view.
+//! Meshes in double precision, and functions for all models: cutting polygons into triangles, computing normals, and
+//! fitting a model into the view.
 
 use glam::{DVec3, Vec3};
 
@@ -12,15 +12,15 @@ use crate::sway::Sway;
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,
-    /// Normals of the vertices, of any length. A zero vector marks a missing normal. The list is empty until the first
-    /// normal is given.
+    /// Normals of the vertices, of any length. A zero vector stands for a missing normal. The list is empty until the
+    /// first normal is given.
     pub(crate) normals: Vec<DVec3>,
     pub(crate) colours: Vec<[u8; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// Adds a vertex and returns its index. A zero `normal` marks a missing normal.
+    /// Adds a vertex and returns its index. A zero vector as `normal` stands for a missing normal.
     pub(crate) fn push(&mut self, position: DVec3, normal: DVec3, colour: [u8; 3]) -> u32 {
         let index = self.positions.len() as u32;
         if normal != DVec3::ZERO || !self.normals.is_empty() {
@@ -32,7 +32,7 @@ impl Mesh {
         index
     }
 
-    /// Adds a polygon as a fan of triangles that share its first corner.
+    /// Adds a polygon as triangles that all share its first corner.
     pub(crate) fn fan(&mut self, corners: &[u32]) {
         if let [first, rest @ ..] = corners {
             let fan = rest.windows(2).map(|pair| [*first, pair[0], pair[1]]);
@@ -40,8 +40,8 @@ impl Mesh {
         }
     }
 
-    /// Computes a unit normal for every vertex without one: the mean over its triangles, weighted by area. A vertex
-    /// whose triangles have no area gets +z.
+    /// Computes a unit normal for every vertex that has none. It is the mean of the normals of the vertex's triangles,
+    /// weighted by area. If these triangles have no area, the normal is +z.
     pub(crate) fn complete_normals(&mut self) {
         let sums = self.sums_of_areas();
         self.normals.resize(self.positions.len(), DVec3::ZERO);
@@ -50,7 +50,8 @@ impl Mesh {
         }
     }
 
-    /// Returns the sum of the area vectors of the triangles around each vertex.
+    /// Returns, for each vertex, the sum of the area vectors of its triangles. An area vector points along the normal
+    /// and has twice the area as its length.
     fn sums_of_areas(&self) -> Vec<DVec3> {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         for triangle in &self.triangles {
@@ -73,29 +74,30 @@ impl Mesh {
     }
 }
 
-/// Returns the vector scaled to length 1, or `None` for a zero vector. A power of two first brings the largest
-/// component near 1 without rounding. Otherwise squares of very small or large numbers would leave the range of f64.
+/// Returns the vector scaled to length 1, or `None` for a zero vector. The vector is first scaled by a power of two,
+/// which brings its largest component near 1 without rounding. Otherwise squares of very small or large numbers would
+/// leave the range of f64.
 pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     let (_, exponent) = libm::frexp(v.abs().max_element());
     DVec3::from_array(v.to_array().map(|x| libm::ldexp(x, -exponent))).try_normalize()
 }
 
-/// Returns twice the area of a triangle as a vector along its normal.
+/// Returns a vector along the normal of a triangle whose length is twice the triangle's area.
 pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Makes a scene of a model that is already fitted to the default view.
+/// Makes a scene of a model that already has the position and size for the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     seen_by(motion_for_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
 }
 
-/// Returns the motion of a head that looks at a fitted model.
+/// Returns the motion of a head that looks at a model with the position and size for the default view.
 pub(super) fn motion_for_fitted() -> HeadMotion {
     HeadMotion::always_visible(Vec3::ZERO, IMPORT_RADIUS_M)
 }
 
-/// Returns the motion of a head that stands at the origin of a model's coordinates.
+/// Returns the motion of a head that stands still at the origin of a model's coordinates.
 pub(super) fn still_at_origin() -> HeadMotion {
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
@@ -122,14 +124,16 @@ pub(super) fn seen_by(
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
-/// A transformation that moves the centre of a model to the origin and scales its radius to [`IMPORT_RADIUS_M`].
+/// A transformation that fits a model into the default view. It moves the model's centre to the origin and scales its
+/// radius to [`IMPORT_RADIUS_M`].
 pub(crate) struct Fit {
     centre: DVec3,
     pub(crate) scale: f64,
 }
 
 impl Fit {
-    /// Creates a fit from all balls (centre, radius) of the model. A model of a single point is only moved.
+    /// Creates the transformation for a model that consists of balls (centre, radius). A model of a single point is
+    /// moved but not scaled.
     pub(crate) fn new(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
         let (centre, radius) = bounding_sphere(balls);
         let scale = IMPORT_RADIUS_M / radius;
@@ -137,7 +141,7 @@ impl Fit {
         Self { centre, scale }
     }
 
-    /// Returns a fit that changes nothing.
+    /// Returns a transformation that leaves the model unchanged.
     pub(crate) const fn none() -> Self {
         Self { centre: DVec3::ZERO, scale: 1.0 }
     }

@@ -31,7 +31,7 @@ use crate::motion::HeadMotion;
 use crate::scene::Scene;
 
 impl Placement {
-    /// Returns the transformation of a model that consists of balls (centre, radius).
+    /// Returns the transformation that gives a model, described by balls (centre, radius), this placement.
     fn fit(self, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Fit {
         match self {
             Self::Fitted => Fit::new(balls),
@@ -39,7 +39,7 @@ impl Placement {
         }
     }
 
-    /// Returns the motion of a head that looks at a model with this placement.
+    /// Returns the motion of a head for a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
             Self::Fitted => mesh::motion_for_fitted(),
@@ -51,27 +51,28 @@ impl Placement {
 /// A file format that the importers can read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Polygon file: ASCII, binary little-endian or binary big-endian. The element `vertex` has `x y z`, and optionally
-    /// `nx ny nz` and `red green blue`. The element `face` (optionally with `red green blue`) or `tristrips` has
-    /// `vertex_indices` or `vertex_index`.
+    /// PLY polygon file: ASCII, binary little-endian or binary big-endian. The element `vertex` has `x y z`, and
+    /// optionally `nx ny nz` and `red green blue`. The element `face` (optionally with `red green blue`) or `tristrips`
+    /// has `vertex_indices` or `vertex_index`.
     Ply,
-    /// Wavefront object with the statements `v` (with or without colours), `vn`, `f` and `s`. All other statements are
-    /// ignored. A line that ends in `\` continues in the next line.
+    /// Wavefront OBJ file with the statements `v` (with or without colours), `vn`, `f` and `s`. All other statements
+    /// are ignored. A line that ends in `\` continues on the next line.
     Obj,
-    /// Protein Data Bank: `ATOM` and `HETATM` records of the first model become spheres. Of an atom's alternate
-    /// locations, only the first is used.
+    /// Protein Data Bank file. The `ATOM` and `HETATM` records of its first model become spheres. If an atom has
+    /// alternate locations, only the first is used.
     Pdb,
 }
 
 impl Format {
-    /// Returns the format for a file name by its extension in upper or lower case, or `None` for an unknown extension.
-    /// The file itself is not read.
+    /// Returns the format of a file by the extension of its name, in upper or lower case. Returns `None` for an unknown
+    /// extension. The file itself is not read.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
         Self::of_extension(path.extension()?.to_str()?)
     }
 
-    /// Returns the format for an extension without its dot in upper or lower case, or `None` for an unknown extension.
+    /// Returns the format for an extension without its dot, in upper or lower case. Returns `None` for an unknown
+    /// extension.
     #[must_use]
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
@@ -83,7 +84,8 @@ impl Format {
     }
 }
 
-/// Reads a model to the end of `reader`. `name` identifies the model in errors and becomes the name of the scene.
+/// Reads a model from `reader` until the end of the data. `name` identifies the model in errors and becomes the name of
+/// the scene.
 ///
 /// [`from_bytes`] describes the conversion into a scene.
 ///
@@ -94,7 +96,7 @@ pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scen
     placed_from_reader(reader, format, name, Placement::Fitted)
 }
 
-/// Reads a model as [`from_reader`] does, with the model at the position that `placement` selects.
+/// Reads a model as [`from_reader`] does. `placement` determines position and size of the model.
 ///
 /// # Errors
 ///
@@ -108,7 +110,7 @@ pub fn placed_from_reader(
     read_placed(reader, 0, format, name, placement)
 }
 
-/// Reads a model of about `size` bytes as [`placed_from_reader`] does.
+/// Reads a model as [`placed_from_reader`] does. `size` is its expected number of bytes, for which memory is reserved.
 fn read_placed(
     reader: impl Read,
     size: u64,
@@ -131,25 +133,27 @@ fn read_placed(
     }
 }
 
-/// Reads a model from memory. `name` identifies the model in errors and becomes the name of the scene.
+/// Reads a model from the bytes of its file. `name` identifies the model in errors and becomes the name of the scene.
 ///
-/// Polygons are cut into triangles, concave ones too. A missing normal becomes the mean of the adjacent triangles,
-/// weighted by area. In OBJ files the mean covers only a smoothing group, and faces without a smoothing group are flat.
+/// Convex and concave polygons are cut into triangles. A missing normal becomes the mean of the normals of adjacent
+/// triangles, weighted by area. In OBJ files the mean covers only triangles of the same smoothing group, and faces
+/// without a smoothing group are flat.
 ///
-/// The model is moved so that the centre of its box is the origin. The scale puts the farthest point of the model at a
-/// distance of [`crate::config::IMPORT_RADIUS_M`]. Both eyes then see all of it under [`Scene::motion`], whatever the
-/// units of the file. The axes stay: +y is up, and +z faces the viewer.
+/// The model is moved so that the centre of its bounding box is the origin. It is scaled so that its farthest point is
+/// [`crate::config::IMPORT_RADIUS_M`] from the origin. Both eyes then see the whole model under [`Scene::motion`],
+/// whatever the units of the file. The axes stay the same: +y is up, and +z faces the viewer.
 ///
 /// # Errors
 ///
-/// [`LoadError`] states the error and its position. No input causes a panic. Reading takes at most
+/// [`LoadError`] states the error and its position in the file. No input causes a panic. Reading takes at most
 /// [`crate::config::MEMORY_TIMES_FILE`] times the size of the file, including the file, plus
 /// [`crate::config::MEMORY_FLOOR_BYTES`].
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }
 
-/// Reads a model from memory as [`from_bytes`] does, with the model at the position that `placement` selects.
+/// Reads a model from the bytes of its file as [`from_bytes`] does. `placement` determines position and size of the
+/// model.
 ///
 /// # Errors
 ///
@@ -161,7 +165,7 @@ pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Pl
     }
 }
 
-/// The result of reading a file.
+/// The content of a model file after reading.
 enum Content {
     /// A mesh that is not yet a scene. The file's bytes can be freed before the scene is made.
     Mesh(Model),
@@ -170,7 +174,7 @@ enum Content {
 
 fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Content, LoadError> {
     let source = Source { name, bytes };
-    // Refuse unsuitable bytes before any parser sees them.
+    // Reject unsuitable bytes before any parser reads them.
     source.check_is_bytes_of_text()?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });

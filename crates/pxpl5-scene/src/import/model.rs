@@ -1,5 +1,5 @@
-//! The common result of the mesh readers. The columns of a model hold only the data of its file, so a model takes at
-//! most seven times the memory of its file.
+//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. It
+//! therefore needs at most seven times the memory of the file.
 
 use std::hash::{BuildHasher, RandomState};
 
@@ -13,7 +13,7 @@ use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
-/// Positions of points, in the lowest precision that holds them exactly.
+/// Positions of points, in single precision if this is exact and otherwise in double precision.
 pub(super) enum Places {
     Single(Vec<Vec3>),
     Double(Vec<DVec3>),
@@ -55,8 +55,8 @@ impl Places {
         }
     }
 
-    /// Returns the least height of a triangle relative to its longest edge. A flatter triangle may have its area from
-    /// rounding alone.
+    /// Returns the least height of a valid triangle, relative to its longest edge. The area of a flatter triangle may
+    /// come from rounding alone.
     const fn least_height(&self) -> f64 {
         match self {
             Self::Single(_) => 1e-6,
@@ -72,21 +72,22 @@ impl Places {
     }
 }
 
-/// A point and the detail that distinguishes vertices at this point ([`Detail`]). The type is short, because a file can
-/// have many times more corners than points.
+/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type is short,
+/// because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`].
+/// The meaning of the second number of a [`Corner`], which distinguishes vertices at one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// A normal, counted from 1, or a smoothing group of faces (0, or from 2^31 on) for a corner without a normal.
+    /// The index of a normal, counted from 1. For a corner without a normal it is the smoothing group of the face: 0,
+    /// or a number from 2^31 on.
     Normal,
-    /// Red, green and blue of a face, packed with red in the lowest byte.
+    /// The colour of a face: red, green and blue, packed with red in the lowest byte.
     Colour,
 }
 
-/// A table from corners to vertices, with 5 bytes per vertex. The model holds the corners themselves. The table is only
-/// searched, never iterated, so its order has no effect.
+/// A hash table from corners to vertices, with 5 bytes per slot. The model stores the corners themselves. The table is
+/// only searched and never iterated, so its order has no effect.
 #[derive(Default)]
 pub(super) struct Vertices {
     table: HashTable<u32>,
@@ -94,7 +95,7 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// Returns the vertex of a corner, and creates one if the corner is new.
+    /// Returns the index of the vertex for a corner, and adds a vertex if the corner is new.
     pub(super) fn of(&mut self, corners: &mut Vec<Corner>, corner: Corner) -> u32 {
         let hash = self.hasher.hash_one(corner);
         if let Some(&known) = self.table.find(hash, |&vertex| corners[vertex as usize] == corner) {
@@ -108,7 +109,8 @@ impl Vertices {
     }
 }
 
-/// Adds an item to a list that grows by an eighth instead of doubling, because a file can consist mostly of such items.
+/// Adds an item to a list. The list grows by an eighth instead of doubling, because it may contain most of a file and
+/// must not waste memory.
 pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 1024);
@@ -116,24 +118,25 @@ pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh in the form in which its file contains it, before scaling.
+/// A mesh as its file contains it, before it is scaled.
 pub(super) struct Model {
     pub(super) places: Places,
-    /// Unit normals, with zero vectors for missing ones. The list is empty until the first normal is read.
+    /// Unit normals from the file. A zero vector stands for a missing normal. The list is empty until the first
+    /// normal is read.
     pub(super) normals: Vec<Vec3>,
-    /// Colours of the points. The list is empty if all have [`DEFAULT_COLOUR`].
+    /// Colours of the points. The list is empty if all points have [`DEFAULT_COLOUR`].
     pub(super) colours: Vec<[u8; 3]>,
-    /// Corners of the vertices. The list is empty if each point is a vertex, with the normal of the same number.
+    /// Corners of the vertices. The list is empty if each point is exactly one vertex, whose normal has the same index.
     pub(super) corners: Vec<Corner>,
     pub(super) detail: Detail,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Warnings about content that may be read otherwise than its writer intended.
+    /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
-    /// Number of concave polygons with too many corners for cutting.
+    /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
 }
 
-/// Returns a direction of a file scaled to length 1, or a zero vector for a direction without length.
+/// Returns a direction from a file scaled to length 1, or a zero vector if the direction has no length.
 pub(super) fn direction(v: DVec3) -> Vec3 {
     unit(v).map_or(Vec3::ZERO, |unit| unit.as_vec3())
 }
@@ -152,8 +155,8 @@ impl Model {
         }
     }
 
-    /// Replaces the fan of a concave polygon with triangles that do not fill its notches. The fan consists of the
-    /// triangles from `first` on.
+    /// Replaces the triangles of a concave polygon. The triangles from index `first` on all share its first corner and
+    /// cover its notches. The new triangles leave the notches open.
     pub(super) fn cut_polygon(&mut self, first: usize) {
         match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
             Cut::Fan => {}
@@ -165,13 +168,14 @@ impl Model {
         }
     }
 
-    /// Returns the normal of the polygon whose fan consists of the triangles from `first` on, or zero for a polygon
-    /// without area.
+    /// Returns the normal of a polygon, or zero for a polygon without area. The triangles from index `first` on are the
+    /// polygon's and share its first corner.
     pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
         direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
     }
 
-    /// Returns an error if the model, with `more_triangles` to come, takes too much memory for the size of its file.
+    /// Returns an error if the model needs too much memory for the size of its file. `more_triangles` is the number of
+    /// triangles still to be read.
     pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), LoadError> {
         let found = source.bytes.len()
             + self.lists_bytes()
@@ -202,7 +206,7 @@ impl Model {
         Err(LoadError::NothingToDraw { file: name.to_owned(), expected })
     }
 
-    /// Makes a scene of the mesh. The file's bytes are not needed for this.
+    /// Makes a scene of the mesh. The bytes of the file may be freed before this.
     pub(super) fn into_scene(
         mut self,
         name: &str,
@@ -216,7 +220,7 @@ impl Model {
             ));
         }
         let warnings = std::mem::take(&mut self.warnings);
-        // Unused vertices would change the fit.
+        // Remove unused vertices, because they would change the size and position of the model.
         if self.corners.is_empty() {
             self.remove_unused_points();
         }
@@ -238,7 +242,7 @@ impl Model {
         self.corners.get(vertex).map_or(vertex, |corner| corner.0 as usize)
     }
 
-    /// Returns the normal that the file gives a vertex, or zero if it gives none.
+    /// Returns the normal that the file contains for a vertex, or zero if the file has none.
     fn given_normal(&self, vertex: usize) -> Vec3 {
         let number = match (self.corners.get(vertex), self.detail) {
             (Some(corner), Detail::Normal) => corner.1 as usize,
@@ -254,8 +258,8 @@ impl Model {
         }
     }
 
-    /// Returns the vertices of the scene, rounded to single precision. A missing normal becomes the mean over the
-    /// triangles that share the corner, weighted by area. If these triangles have no area, the normal is +z.
+    /// Returns the vertices of the scene, rounded to single precision. A missing normal becomes the mean of the normals
+    /// of the triangles at this vertex, weighted by area. If these triangles have no area, the normal is +z.
     fn fitted_vertices(&self, fit: &Fit) -> Vec<Vertex> {
         let mut vertices = Vec::with_capacity(self.vertices());
         vertices.extend((0..self.vertices()).map(|vertex| Vertex {
@@ -274,24 +278,24 @@ impl Model {
         vertices
     }
 
-    /// Returns the shading number of a vertex. Vertices with one shading number get one mean normal. Faces of different
-    /// colours share the points between them, but faces of different smoothing groups do not.
+    /// Returns the number of the group of vertices that share one mean normal with this vertex. Faces of different
+    /// colours share groups at their common points. Faces of different smoothing groups do not.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
 
-    /// Returns the number of values that [`Self::shading`] can take.
+    /// Returns the number of groups of vertices that share a mean normal.
     fn shaded(&self) -> usize {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of shadings whose areas are summed at a time. Sums are in double precision, and all at once
-    /// would take as much memory as the positions.
+    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. All of
+    /// them together would need as much memory as the positions.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
 
-    /// Computes a normal for every vertex without one whose shading is among `count` numbers from `first` on.
+    /// Computes a mean normal for every vertex without a normal, for `count` groups of vertices from group `first` on.
     fn complete_normals(&self, vertices: &mut [Vertex], fit: &Fit, first: usize, count: usize) {
         let mut sums = vec![DVec3::ZERO; count.min(self.shaded() - first)];
         for triangle in &self.triangles {
@@ -299,7 +303,7 @@ impl Model {
             if shadings.iter().all(|shading| shading.wrapping_sub(first) >= sums.len()) {
                 continue;
             }
-            // Areas are computed from fitted positions: the areas of very small models would leave the range of f64.
+            // Areas are computed after scaling. The areas of very small models would otherwise leave the range of f64.
             let area = area(self.corner_places(*triangle).map(|place| fit.place(place)));
             for shading in shadings {
                 if let Some(sum) = sums.get_mut(shading.wrapping_sub(first)) {
@@ -314,8 +318,8 @@ impl Model {
         }
     }
 
-    /// Removes the vertices that triangles do not use. Unused vertices would affect the fit and cost time in every
-    /// frame.
+    /// Removes the vertices that no triangle uses. They would change the model's position and size and cost time in
+    /// every frame.
     fn remove_unused_points(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {
@@ -340,36 +344,37 @@ impl Model {
         retain(&mut self.colours, &used);
     }
 
-    /// Returns an error if the model takes too much memory while its scene is made. The file itself is not counted.
+    /// Returns an error if making the scene needs too much memory. The bytes of the file are not counted.
     fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), LoadError> {
         let sums = self.shadings_per_pass().min(self.shaded()) * size_of::<DVec3>();
         check_memory(name, self.lists_bytes() + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
     }
 }
 
-/// Unpacks the colour in the second number of a [`Corner`] of [`Detail::Colour`].
+/// Returns red, green and blue from the second number of a [`Corner`] of [`Detail::Colour`].
 fn packed_colour(packed: u32) -> [u8; 3] {
     let [red, green, blue, _] = packed.to_le_bytes();
     [red, green, blue]
 }
 
-/// Returns a number with its noun in singular or plural.
+/// Returns a text with a number and its noun, in singular or plural.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Returns an error if a model takes more than [`MEMORY_TIMES_FILE`] times its file plus [`MEMORY_FLOOR_BYTES`].
+/// Returns an error if a model needs more than [`MEMORY_TIMES_FILE`] times the size of its file plus
+/// [`MEMORY_FLOOR_BYTES`].
 fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadError> {
     let expected = MEMORY_TIMES_FILE * file_bytes as u64 + MEMORY_FLOOR_BYTES;
     let found = found as u64;
     if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
 }
 
-/// Greatest number of bytes per vertex in a table of vertices. A slot takes five bytes, and between 7/16 and 7/8 of the
-/// slots are used. The table needs half as much again while it grows.
+/// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots
+/// are used. While the table grows, it needs half as much again.
 const TABLE_BYTES: usize = 17;
 
-/// Keeps the items whose `keep` is true, and frees the rest of the memory. An empty list stays empty.
+/// Keeps the items whose element in `keep` is true, and frees the unused memory. An empty list stays empty.
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     items.retain(|_| keep.next() == Some(&true));

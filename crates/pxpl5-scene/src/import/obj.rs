@@ -1,7 +1,7 @@
-//! Wavefront OBJ.
+//! Reader of Wavefront OBJ files.
 //!
-//! This crate has its own reader. The maintained library tobj reports neither the line of an error nor the expected and
-//! found content.
+//! The existing library tobj is not used, because its errors lack the line number, the expected content and the found
+//! content.
 
 use glam::{DVec3, Vec3};
 
@@ -13,7 +13,7 @@ use crate::error::{FilePlace, LoadError};
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut reader = Reader::new(source)?;
-    // Faces may come before the points that they refer to, so points are read first.
+    // Faces may come before the vertices that they refer to, so points are read first.
     for (number, line) in statements(source) {
         reader.point(FilePlace::Line(number), line)?;
     }
@@ -26,31 +26,33 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
 struct Reader<'a> {
     source: &'a Source<'a>,
     counts: Counts,
-    /// Numbers of points and normals up to the current line, from which negative indices count back.
+    /// Number of points up to the current line. Negative indices count back from this number.
     points: usize,
     normals: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
-    /// Smoothing group of the current faces as the second number of a [`Corner`](super::model::Corner), or `None` for
+    /// Smoothing group of the current faces, as the second number of a [`Corner`](super::model::Corner). `None` for
     /// flat faces.
     smoothing: Option<u32>,
     vertices: Vertices,
     model: Model,
 }
 
-/// Numbers of items in a file. The lists of a model get their final lengths at once, because growing lists are copied.
+/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths, because
+/// a growing list is copied.
 #[derive(Default)]
 struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
-    /// Largest component of a colour. Fractions go up to 1, bytes up to 255.
+    /// Largest component of any colour in the file. It shows whether colours are fractions up to 1 or bytes up to 255.
     brightest: f64,
     has_materials: bool,
 }
 
 impl Counts {
-    /// Counts the items of a file. Only words and the numbers of colours are examined.
+    /// Counts the points, normals and faces of a file. Of each line, only the first word and the numbers of colours are
+    /// examined.
     fn of(source: &Source<'_>) -> Self {
         let mut counts = Self::default();
         for (_, line) in statements(source) {
@@ -71,8 +73,8 @@ impl Counts {
     }
 }
 
-/// Returns the statements of a file with the numbers of their first lines. A line that ends in `\` continues in the
-/// next line. A comment never continues, because paths of folders can end in `\`.
+/// Returns the statements of a file, each with the number of its first line. A line that ends in `\` continues on the
+/// next line. A comment never continues, because a folder's path in a comment can end in `\`.
 fn statements<'a>(source: &Source<'a>) -> impl Iterator<Item = (u64, &'a [u8])> {
     let mut lines = source.lines();
     let bytes = source.bytes;
@@ -85,20 +87,20 @@ fn statements<'a>(source: &Source<'a>) -> impl Iterator<Item = (u64, &'a [u8])> 
                 None => break,
             }
         }
-        // The lines follow each other in the file, so a statement is one slice.
+        // The lines are adjacent in the file, so the statement is one slice of its bytes.
         let begin = first.as_ptr() as usize - bytes.as_ptr() as usize;
         let end = last.as_ptr() as usize - bytes.as_ptr() as usize + last.len();
         Some((number, &bytes[begin..end]))
     })
 }
 
-/// Returns the text before a comment. The `#` in `1.#QNAN` does not begin a comment.
+/// Returns the part of a line before its comment. The `#` in `1.#QNAN` does not begin a comment.
 fn code(line: &[u8]) -> &[u8] {
     let is_comment = |at: &usize| line[*at] == b'#' && (*at == 0 || line[at - 1] != b'.');
     &line[..(0..line.len()).find(is_comment).unwrap_or(line.len())]
 }
 
-/// Returns the words of a statement before its comment, without the `\` between its lines.
+/// Returns the words of a statement, without its comment and without the `\` between its lines.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     code(line)
         .split(u8::is_ascii_whitespace)
@@ -109,7 +111,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let counts = Counts::of(source);
-        // Reserve the lists at their final lengths.
+        // Allocate the lists with their final lengths.
         let mut model = Model::new(Places::Double(Vec::new()));
         model.places.reserve_exact(counts.points);
         model.normals.reserve_exact(counts.normals);
@@ -139,7 +141,7 @@ impl<'a> Reader<'a> {
         model
     }
 
-    /// Reads a statement that defines a point or a normal.
+    /// Reads a statement that defines a point (`v`) or a normal (`vn`).
     fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
         let mut words = words(line);
         match words.next() {
@@ -157,8 +159,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a statement that defines faces or their shading. Texture coordinates, groups, objects, materials and
-    /// curves are ignored.
+    /// Reads a statement that defines a face or the shading of faces. Statements for texture coordinates, groups,
+    /// objects, materials and curves are ignored.
     fn surface(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
         let mut words = words(line);
         match words.next() {
@@ -171,15 +173,15 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Reads a face and cuts it into triangles.
+    /// Reads a face with any number of corners and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let first = self.model.triangles.len();
-        // The normal of a flat face is computed after its corners are read, and will get this number.
+        // The normal of a flat face is computed after its corners are read. It will then get this index.
         let flat = self.model.normals.len() as u32 + 1;
         let mut needs_normal = false;
         let mut known = [0; 2];
         let mut count = 0;
-        // Add a fan of triangles around the first corner.
+        // Add triangles that all share the first corner.
         for word in words {
             let (point, normal) = self.corner(at, word)?;
             needs_normal |= normal.is_none() && self.smoothing.is_none();
@@ -198,7 +200,7 @@ impl<'a> Reader<'a> {
             let found = format!("{count} in {}", excerpt(&String::from_utf8_lossy(code(line))));
             return Err(self.source.syntax(at, "a face of at least 3 corners", found));
         }
-        // Add the normal of a flat face, and replace the fan if the polygon is concave.
+        // Add the normal of a flat face. If the polygon is concave, replace its triangles.
         if needs_normal {
             let normal = self.model.polygon_normal(first);
             push_with_slow_growth(&mut self.model.normals, normal);
@@ -222,7 +224,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a direction. If it is NaN, the result is zero, and the normal is computed as if the file had none.
+    /// Reads the direction of a normal. NaN gives a zero vector. The normal is then computed as if the file had none.
     fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, LoadError> {
         let normal = DVec3::from_array(self.vector(at, &mut words)?);
         if normal.is_finite() {
@@ -232,7 +234,8 @@ impl<'a> Reader<'a> {
         Ok(Vec3::ZERO)
     }
 
-    /// Reads the colour after a point, if there is one. A single number in its place is a weight and is ignored.
+    /// Reads the colour that may follow the coordinates of a point. A single number after the coordinates is a weight
+    /// and is ignored.
     fn colour<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let found = [words.next(), words.next(), words.next()];
         let colour = match found {
@@ -247,7 +250,7 @@ impl<'a> Reader<'a> {
             _ if self.model.colours.is_empty() => return Ok(()),
             _ => DEFAULT_COLOUR,
         };
-        // Points before the first coloured one get the default colour.
+        // Points before the first coloured point get the default colour.
         if self.model.colours.is_empty() {
             self.model.colours.reserve_exact(self.counts.points);
             self.model.colours.resize(self.model.places.len() - 1, DEFAULT_COLOUR);
@@ -256,8 +259,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Reads a corner in one of the forms point, point/texture, point//normal or point/texture/normal. The normal
-    /// counts from 1.
+    /// Reads a corner in one of the forms point, point/texture, point//normal or point/texture/normal. Returns the
+    /// indices of the point (from 0) and of the normal (from 1).
     fn corner(&self, at: FilePlace, word: &[u8]) -> Result<(u32, Option<u32>), LoadError> {
         let mut fields = text(word).splitn(3, '/');
         let point = fields.next().unwrap_or_default();
@@ -270,7 +273,7 @@ impl<'a> Reader<'a> {
         Ok((point, is_given.then_some(normal)))
     }
 
-    /// Parses an index. 1 is the first item of the file, and -1 is the last item so far.
+    /// Parses an index. 1 is the first item of the file, and -1 is the last item before this line.
     fn index(
         &self,
         at: FilePlace,
@@ -285,7 +288,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the group named by an `s` statement, or `None` if the statement turns smoothing off.
+/// Parses the smoothing group of an `s` statement. Returns `None` if the statement turns smoothing off.
 fn smoothing_group(word: &[u8]) -> Option<u32> {
     let group = match text(word).parse::<u64>() {
         Ok(group) => group,

@@ -1,4 +1,5 @@
-//! Protein Data Bank files. Columns are fixed and counted from 1, as in the format's guide, version 3.3.
+//! Reader of Protein Data Bank files. Columns have fixed positions and count from 1, as in the format's guide, version
+//! 3.3.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,22 +11,22 @@ use super::{Placement, Source};
 use crate::error::{FilePlace, LoadError};
 use crate::scene::{Scene, Sphere};
 
-/// An atom of a file.
+/// An atom of a Protein Data Bank file.
 pub(crate) struct Atom {
-    /// Name within the residue, such as "CA".
+    /// Name of the atom within its residue, such as "CA" for the alpha carbon.
     pub(crate) name: String,
-    /// Position in the coordinates of the file, Ångström.
+    /// Position of the atom's centre in the coordinates of the file, Ångström.
     pub(crate) position: DVec3,
     pub(crate) element: Element,
 }
 
-/// The appearance of an element.
+/// Radius and colour with which the atoms of a chemical element are drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Element {
     symbol: &'static str,
-    /// Van der Waals radius, Ångström.
+    /// Van der Waals radius of the element, Ångström.
     pub(crate) radius: f64,
-    /// Colour in the tradition of the models by Corey, Pauling and Koltun.
+    /// Colour of the element by the custom of the models of Corey, Pauling and Koltun.
     pub(crate) colour: [u8; 3],
 }
 
@@ -33,8 +34,8 @@ const fn element(symbol: &'static str, radius: f64, colour: [u8; 3]) -> Element 
     Element { symbol, radius, colour }
 }
 
-/// The known elements. Radii from H to I are published by Bondi 1964. Bondi gives none for Fe, Ca, Mn and Co: 2.0 is
-/// assumed (1.4 to 2.5). Colours follow the custom of molecular graphics: assumed, any.
+/// The elements with radii and colours. The radii from H to I are published by Bondi 1964. Bondi has no radii for Fe,
+/// Ca, Mn and Co: 2.0 is assumed (1.4 to 2.5). Colours follow the custom of molecular graphics: assumed, any.
 const ELEMENTS: [Element; 20] = [
     element("H", 1.20, [255, 255, 255]),
     element("D", 1.20, [255, 255, 255]),
@@ -58,7 +59,7 @@ const ELEMENTS: [Element; 20] = [
     element("CO", 2.00, [240, 144, 160]),
 ];
 
-/// Appearance of any other element. Assumed: within the range of the table.
+/// Radius and colour of an element that is not in the table. The radius is assumed, within the range of the table.
 const OTHER: Element = element("?", 1.80, [255, 20, 147]);
 
 pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, LoadError> {
@@ -72,7 +73,7 @@ pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, L
 }
 
 impl Atom {
-    /// Returns the atom as a sphere, moved to `position` (Ångström).
+    /// Returns the atom as a sphere with its centre at `position` (Ångström), transformed by `fit`.
     pub(crate) fn sphere(&self, position: DVec3, fit: &Fit) -> Sphere {
         Sphere {
             centre: fit.place(position).as_vec3(),
@@ -82,8 +83,8 @@ impl Atom {
     }
 }
 
-/// Reads the atoms of the first model, in the order of the file. Of an atom's alternate locations, only the first is
-/// kept.
+/// Reads the atoms of the first model in the file, in their order. If an atom has alternate locations, only the first
+/// is kept.
 pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut atoms = Vec::new();
     let mut alternates = Alternates::default();
@@ -99,18 +100,19 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     Ok(atoms)
 }
 
-/// The alternate locations read so far. The tables are only searched, never iterated, so their order has no effect.
+/// The alternate locations of atoms that were read so far. The tables are only searched and never iterated, so their
+/// order has no effect.
 #[derive(Default)]
 struct Alternates<'a> {
-    /// First residue name at each position of the chain (columns 22 to 27) with alternates. Other residue names at the
-    /// position belong to another molecule.
+    /// For each position of the chain with alternate locations (columns 22 to 27), the name of the first residue there.
+    /// Residues of other names at this position belong to another molecule.
     residues: HashMap<&'a [u8], &'a [u8]>,
-    /// Position and name of every atom with alternates.
+    /// Position in the chain and name of every atom with alternate locations.
     atoms: HashSet<(&'a [u8], &'a [u8])>,
 }
 
 impl<'a> Alternates<'a> {
-    /// Returns true if an atom has only one location, or if this is its first location.
+    /// Returns true for the first location of an atom, and for an atom with a single location.
     fn is_first(&mut self, line: &'a [u8]) -> bool {
         if columns(line, 17, 17).is_empty() {
             return true;
@@ -137,23 +139,23 @@ fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, LoadErr
     })
 }
 
-/// Symbols of two letters that occur in no residue of [`RESIDUES`] and are not in [`ELEMENTS`]. Symbols that begin with
-/// H are left out: H with a second letter is a hydrogen with the name of its position.
+/// Symbols of two letters of further elements, which occur in no residue of [`RESIDUES`]. Symbols that begin with H are
+/// left out: in an atom's name, H and a second letter stand for a hydrogen at a certain position.
 const OTHER_SYMBOLS: [&str; 48] = [
     "LI", "BE", "NE", "AL", "SI", "AR", "SC", "TI", "CR", "NI", "CU", "GA", "GE", "AS", "KR", "RB", "SR", "ZR", "NB",
     "MO", "RU", "RH", "PD", "AG", "CD", "IN", "SN", "SB", "TE", "XE", "CS", "BA", "LA", "CE", "PR", "SM", "EU", "GD",
     "TB", "YB", "LU", "TA", "RE", "OS", "IR", "PT", "AU", "PB",
 ];
 
-/// Residues that consist only of H, D, C, N, O, S and P: amino acids, nucleotides and water.
+/// Names of residues that consist only of H, D, C, N, O, S and P: amino acids, nucleotides and water.
 const RESIDUES: [&str; 38] = [
     "ALA", "ARG", "ASN", "ASP", "ASX", "CYS", "GLN", "GLU", "GLX", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE",
     "PRO", "SER", "THR", "TRP", "TYR", "VAL", "A", "C", "G", "U", "I", "T", "DA", "DC", "DG", "DT", "DU", "DI", "HOH",
     "DOD", "WAT", "ACE",
 ];
 
-/// Returns the element of an atom. Columns 77 and 78 hold it in most files. Other files have a line number or nothing
-/// there, and the element follows from the atom's name in columns 13 to 16.
+/// Returns the element of an atom. Most files state it in columns 77 and 78. Other files have a line number or nothing
+/// in these columns. The element then follows from the atom's name in columns 13 to 16.
 fn element_of(line: &[u8]) -> Element {
     let symbol = text(columns(line, 77, 78));
     if !symbol.is_empty() && symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) {
@@ -169,8 +171,8 @@ fn known(symbol: &str) -> Element {
     known.copied().unwrap_or(OTHER)
 }
 
-/// Returns the element's symbol in the four columns of an atom's name. The symbol is right-aligned in the first two
-/// columns, unless the name takes all four.
+/// Returns the symbol of the element in an atom's name of four columns. The symbol is right-aligned in the first two
+/// columns, unless the name fills all four.
 fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
     let letters = name.trim().trim_start_matches(|c: char| c.is_ascii_digit());
     let first = letters.get(..1).unwrap_or_default();
@@ -178,7 +180,7 @@ fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
     let is_single = matches!(first, "H" | "D" | "B" | "C" | "N" | "O" | "F" | "P" | "S" | "K" | "I");
     match symbol {
         None => first,
-        // An ion is its own residue.
+        // An ion forms a residue of its own, with the same name.
         Some(two) if two == residue => two,
         _ if RESIDUES.contains(&residue) => first,
         Some(two @ ("CL" | "BR" | "FE")) => two,
@@ -191,7 +193,8 @@ fn symbol_of_name<'n>(name: &'n str, residue: &str) -> &'n str {
     }
 }
 
-/// Returns columns `first` to `last` without white space around them. The result is empty beyond the line's end.
+/// Returns the text in columns `first` to `last` without white space around it. The result is empty if the line ends
+/// before these columns.
 fn columns(line: &[u8], first: usize, last: usize) -> &[u8] {
     let end = last.min(line.len());
     line.get(first - 1..end).unwrap_or_default().trim_ascii()

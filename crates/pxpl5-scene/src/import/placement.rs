@@ -1,13 +1,13 @@
-//! The placement of an imported model.
+//! The position and size that an imported model gets in a scene.
 
-/// The placement of an imported model.
+/// The position and size that an imported model gets in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Placement {
-    /// The model is moved to the origin and scaled. Both eyes see all of it wherever
-    /// [`Scene::motion`](crate::Scene::motion) takes the head.
+    /// The model is moved to the origin and scaled. Both eyes see the whole model at every pose of the head's motion
+    /// [`Scene::motion`](crate::Scene::motion).
     #[default]
     Fitted,
-    /// The model keeps the coordinates of its file. A unit of the file is a metre. The head stands at the origin and
-    /// looks along -z.
+    /// The model keeps the coordinates of its file, and one unit of the file is a metre. The head stands at the origin
+    /// and looks along -z.
     AsInFile,
 }

@@ -1,5 +1,5 @@
-//! PLY files. A library reads the header and binary rows. This module interprets the rows, reads ASCII rows and finds
-//! the positions of errors.
+//! Reader of PLY files. A library parses the header and binary rows. This module interprets the rows, parses ASCII rows
+//! and finds the positions of errors.
 
 use std::io::{Cursor, ErrorKind};
 use std::str::FromStr;
@@ -25,7 +25,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let announced = elements.iter().filter(|element| element.name == "vertex");
     rows.longest_list =
         announced.fold(LIST, |numbers, e| numbers.saturating_add(e.count.saturating_mul(LIST_PER_VERTEX)));
-    // Elements may come in any order. Faces before the last vertices are skipped and read at the end.
+    // Elements may come in any order. Faces before the vertices are skipped and read at the end.
     let mut passed_over = Vec::new();
     for (number, element) in elements.iter().enumerate() {
         rows.check_length(element)?;
@@ -54,39 +54,40 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     Ok(mesh)
 }
 
-/// A reader of the rows of all elements, one after the other.
+/// A reader of the rows of a PLY file, element after element.
 struct Rows<'a> {
     source: &'a Source<'a>,
     header: Header,
     cursor: Cursor<&'a [u8]>,
-    /// Byte that ends a line of an ASCII file.
+    /// Byte that ends each line of an ASCII file.
     end: u8,
-    /// Number of the next line of an ASCII file.
+    /// Line number of the next line of an ASCII file.
     line: u64,
     text: &'a str,
-    /// Greatest number of items in a list. Faces and strips never need longer lists for this number of vertices.
+    /// Greatest allowed length of a list. Valid faces and strips with this number of vertices need no longer lists.
     longest_list: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
-    /// True if the colours of faces are ignored because vertices have colours too.
+    /// True if the file has colours of vertices and of faces. The colours of faces are then ignored.
     has_both_colours: bool,
-    /// Vertices of faces with colours.
+    /// Vertices that were created because faces with different colours share a point.
     coloured: Vertices,
 }
 
-/// Greatest length of a list in any file, and additional length for each vertex. Assumed: strips of single triangles
-/// take 8 corners for each vertex of a closed surface.
+/// Greatest length of a list in a file without vertices. Each vertex allows `LIST_PER_VERTEX` more items. Assumed: strips
+/// of single triangles take 8 corners for each vertex of a closed surface.
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// Bytes in which the error of a header without end is searched. Assumed, a few lines or more.
+/// Number of bytes at the start of a file in which an error is searched if the header has no end. Assumed, a few lines
+/// or more.
 const HEADER: usize = 1 << 16;
 
-/// Returns the header with LF line ends, the position after it, and the byte that ends its lines. Bytes that are not
-/// ASCII occur only in comments and names, and become underscores.
+/// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes
+/// that are not ASCII become underscores. They occur only in comments and names.
 fn header_of(bytes: &[u8]) -> (String, usize, u8) {
     let begin = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
-    // A file with CR but no LF after it has lines that end in CR alone.
+    // If the first CR has no LF after it, lines end in CR alone.
     let end = match bytes[begin..].iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
         Some(at) if bytes[begin + at] == b'\r' && bytes.get(begin + at + 1) != Some(&b'\n') => b'\r',
         _ => b'\n',
@@ -109,7 +110,7 @@ fn header_of(bytes: &[u8]) -> (String, usize, u8) {
 impl<'a> Rows<'a> {
     fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
         let (text, behind, end) = header_of(source.bytes);
-        // Let the library parse the cleaned header, and find the line of an error.
+        // Parse the cleaned header with the library, and find the line of an error.
         let mut reader = Reader::new(Cursor::new(text.as_bytes()));
         let parsed = Parser::<VertexRow>::new().read_header(&mut reader);
         let line = reader.line() as u64;
@@ -142,12 +143,13 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Returns an error for a count that the rest of the file cannot hold, before any memory is allocated for it.
+    /// Returns an error if the rest of the file is too short for the announced number of rows. No memory has been
+    /// allocated for these rows yet.
     fn check_length(&self, element: &ElementDef) -> Result<(), LoadError> {
         let left = self.source.bytes.len() as u64 - self.cursor.position();
         let row = least_row_bytes(element, self.header.encoding);
         let need = element.count as u128 * u128::from(row);
-        // The last line of an ASCII file may lack its end.
+        // The last line of an ASCII file may have no line end.
         if need <= u128::from(left) + 1 {
             return Ok(());
         }
@@ -172,12 +174,12 @@ impl<'a> Rows<'a> {
     fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> LoadError {
         match error.kind() {
             ErrorKind::UnexpectedEof => self.source.truncated(at, row_of(element), "the end of the file"),
-            // The numbers exist, but the header gives a property a type that it cannot have.
+            // All numbers exist, but a property has a type in the header that it cannot have.
             _ => self.source.syntax(at, row_of(element), message(error)),
         }
     }
 
-    /// Parses the numbers of a line. The library's own reader accepts neither `.5` nor `nan`.
+    /// Parses the numbers of one line. The library's own parser accepts neither `.5` nor `nan`.
     fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, LoadError> {
         let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
         let mut words = self.text.split_ascii_whitespace();
@@ -204,10 +206,10 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Reads the next line that is not blank.
+    /// Finds the next line that is not blank.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         loop {
-            // Take the text up to the next line end, or to the end of the file.
+            // The line extends to the next line end, or to the end of the file.
             let begin = self.cursor.position() as usize;
             let rest = &self.source.bytes[begin..];
             if rest.is_empty() {
@@ -225,8 +227,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Returns an error for a list that is too long, before a second copy of it is made. Repeated corners of one or two
-    /// bytes would take many times the memory of the file.
+    /// Returns an error for a list that is too long, before it is copied. If corners of one or two bytes repeat, a copy
+    /// would take many times the memory of the file.
     fn check_list(&self, at: FilePlace, length: usize) -> Result<(), LoadError> {
         if length <= self.longest_list {
             return Ok(());
@@ -251,7 +253,7 @@ impl<'a> Rows<'a> {
         let has = |names: [&str; 3]| names.iter().any(|name| element.properties.contains_key(*name));
         let has_normals = has(["nx", "ny", "nz"]);
         let has_colours = has_colours(element);
-        // Reserve the announced number of rows, which was checked against the file's length.
+        // Allocate the announced number of rows, which was checked against the length of the file.
         mesh.places.reserve_exact(element.count);
         mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
         mesh.colours.reserve_exact(if has_colours { element.count } else { 0 });
@@ -272,7 +274,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Reads faces and cuts them into triangles.
+    /// Reads the faces of an element and cuts them into triangles.
     fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         let has_colours = has_colours(element);
         self.has_both_colours |= has_colours && !mesh.colours.is_empty();
@@ -285,7 +287,7 @@ impl<'a> Rows<'a> {
             }
             self.check_list(at, row.len())?;
             mesh.check_reading(self.source, row.len() - 2)?;
-            // Add a fan of triangles around the first corner, and replace it if the polygon is concave.
+            // Add triangles that all share the first corner. If the polygon is concave, replace them.
             let fan = mesh.triangles.len();
             let colour = has_colours.then_some(row.colour);
             let first = self.vertex(at, &row, 0, colour, mesh)?;
@@ -300,7 +302,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns the vertex at a corner: the point itself, or the point with the colour of its face.
+    /// Returns the vertex for a corner. If faces have colours, points with several colours have several vertices.
     fn vertex(
         &mut self,
         at: FilePlace,
@@ -311,7 +313,7 @@ impl<'a> Rows<'a> {
     ) -> Result<u32, LoadError> {
         let point = self.corner(at, row, n, mesh)?;
         let Some([red, green, blue]) = colour else { return Ok(point) };
-        // A point with several colours becomes several vertices.
+        // A point becomes one vertex for each colour of its faces.
         mesh.detail = Detail::Colour;
         Ok(self.coloured.of(&mut mesh.corners, (point, u32::from_le_bytes([red, green, blue, 0]))))
     }
@@ -331,8 +333,8 @@ impl<'a> Rows<'a> {
         self.source.index(at, "vertices", corner, mesh.places.len(), corner)
     }
 
-    /// Reads strips of corners, separated by -1. Every corner after the first two of a strip completes a triangle.
-    /// Every second triangle is turned over.
+    /// Reads strips of corners, separated by -1. Every corner of a strip after the first two completes a triangle with
+    /// the two corners before it. Every second triangle is reversed.
     fn strips(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
@@ -348,7 +350,7 @@ impl<'a> Rows<'a> {
                     continue;
                 }
                 strip.push(self.corner(at, &row, n, mesh)?);
-                // Swapping the first two corners of every second triangle keeps the orientation.
+                // Swapping the first two corners of every second triangle gives all triangles the same orientation.
                 if let [_, _, last] = strip[..] {
                     push_with_slow_growth(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
                     strip.remove(0);
@@ -359,7 +361,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns an error if anything except white space follows the last row.
+    /// Returns an error if the file has anything except white space after the last row.
     fn check_end(&self) -> Result<(), LoadError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
         if rest.iter().all(u8::is_ascii_whitespace) {
@@ -384,7 +386,7 @@ fn has_colours(element: &ElementDef) -> bool {
     COLOURS.as_flattened().iter().any(|name| element.properties.contains_key(*name))
 }
 
-/// Sets one component of a colour from a property: an integer from 0 to 255 or a fraction from 0 to 1.
+/// Sets one component of a colour from a property, which is an integer from 0 to 255 or a fraction from 0 to 1.
 fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> PropertyAccessResult {
     let Some(part) = COLOURS.iter().find_map(|names| names.iter().position(|known| *known == name)) else {
         return PropertyAccessResult::Ignored;
@@ -397,7 +399,7 @@ fn set_colour(colour: &mut [u8; 3], name: &str, property: &Property) -> Property
     PropertyAccessResult::Set
 }
 
-/// Returns true if single precision holds the positions in an element's rows exactly.
+/// Returns true if all coordinates of an element have types that single precision represents exactly.
 fn has_single_places(element: &ElementDef) -> bool {
     let is_double = |axis: &str| {
         let kind = element.properties.get(axis).map(|property| &property.data_type);
@@ -406,14 +408,15 @@ fn has_single_places(element: &ElementDef) -> bool {
     !["x", "y", "z"].into_iter().any(is_double)
 }
 
-/// Returns a description such as: a row of "vertex" (x y z).
+/// Returns a description of an element's rows, such as: a row of "vertex" (x y z).
 fn row_of(element: &ElementDef) -> String {
     let properties: Vec<&str> = element.properties.keys().map(String::as_str).collect();
     let properties: String = properties.join(" ").chars().take(80).collect();
     format!("a row of {:?} ({properties})", element.name)
 }
 
-/// Checks two rules that the library ignores: the version must be 1.0, and an element must not have a property twice.
+/// Checks two rules that the library does not check. The version must be 1.0, and an element must not have a property
+/// twice.
 fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     let mut known = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
@@ -435,7 +438,7 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// Parses a number of a scalar type.
+/// Parses a word as a number of a scalar type.
 fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::Char(word.parse().ok()?),
@@ -451,7 +454,7 @@ fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     })
 }
 
-/// Parses `length` numbers of a scalar type as a list property.
+/// Parses `length` words as a list of numbers of a scalar type.
 fn list<'w>(kind: &ScalarType, words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::ListChar(numbers(words, length)?),
@@ -489,11 +492,11 @@ fn message(error: &ParseError) -> String {
     words.join(" ").chars().take(200).collect()
 }
 
-/// Returns the least size of a row in bytes. The size is at least one, so that a header cannot announce any number of
-/// rows without properties.
+/// Returns the least size of an element's row in bytes. It is at least one, even for rows without properties. Otherwise
+/// a header could announce any number of them.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
-        // A digit, and a space or the end of the line.
+        // In ASCII a number takes at least a digit and a space or line end.
         (_, Encoding::Ascii) => 2,
         (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _), _) => scalar_bytes(scalar),
     });
@@ -552,7 +555,7 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// The corners of a face in the type that the file has. A conversion of one-byte corners would take many times more
+/// The corners of a face in the integer type of the file. Converting corners of one byte each would multiply the
 /// memory.
 struct FaceRow {
     corners: Property,

@@ -1,27 +1,29 @@
-//! Polygons of a file as triangles: a fan for convex polygons, ear cutting for concave ones.
+//! Cutting of polygons into triangles. Triangles that share one corner cover a convex polygon. A concave polygon needs
+//! ear cutting.
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// Greatest number of corners of a concave polygon. Derived: ear cutting takes about 136 bytes per corner, so this
-/// number stays near [`crate::config::MEMORY_FLOOR_BYTES`].
+/// Greatest number of corners of a concave polygon that is cut correctly. Derived: ear cutting needs about 136 bytes
+/// per corner, so the memory stays near [`crate::config::MEMORY_FLOOR_BYTES`].
 pub(super) const MOST_CORNERS: usize = 1 << 15;
 
-/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4: single precision keeps
-/// points of a straight line straight to 6e-8.
+/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4. In single precision, points
+/// of a straight line deviate by up to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
 /// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
-    /// The fan of triangles covers the polygon, which is convex.
+    /// The polygon is convex, so triangles that all share its first corner cover it.
     Fan,
-    /// These triangles cover the polygon, with the orientation of the polygon.
+    /// The polygon is concave. These triangles cover it, with the same orientation as the polygon.
     Ears(Vec<[u32; 3]>),
-    /// The polygon is concave and has more than [`MOST_CORNERS`] corners.
+    /// The polygon is concave and has more than [`MOST_CORNERS`] corners, so it is not cut correctly.
     TooLong,
 }
 
-/// Cuts a polygon that is given as a fan about its first corner. `place` returns the position of a corner.
+/// Cuts a polygon into triangles that do not extend beyond it. `fan` has triangles that all share the first corner, and
+/// `place` returns the position of a corner.
 pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     // A triangle is always convex.
     if fan.len() < 2 {
@@ -45,7 +47,7 @@ pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     ears(&ring, flat)
 }
 
-/// Returns the corners of a polygon, from its fan.
+/// Returns the corners of a polygon, given as triangles that all share its first corner.
 fn corners(fan: &[[u32; 3]]) -> impl Iterator<Item = u32> + Clone {
     let first = fan.iter().take(1).flat_map(|triangle| [triangle[0], triangle[1]]);
     first.chain(fan.iter().map(|triangle| triangle[2]))
@@ -55,7 +57,7 @@ fn ears(ring: &[u32], flat: impl Fn(u32) -> DVec2) -> Cut {
     let places: Vec<[f64; 2]> = ring.iter().map(|&corner| flat(corner).to_array()).collect();
     let mut indices: Vec<u32> = Vec::new();
     Earcut::new().earcut_slice(&places, &[], &mut indices);
-    // The polygon is anticlockwise in the projection, so its triangles must be too.
+    // The polygon is anticlockwise in the projection, so its triangles must also be anticlockwise.
     let turned = |[a, b, c]: [u32; 3]| {
         let (a2, b2, c2) = (flat(a), flat(b), flat(c));
         if (b2 - a2).perp_dot(c2 - a2) < 0.0 { [a, c, b] } else { [a, b, c] }
@@ -65,9 +67,9 @@ fn ears(ring: &[u32], flat: impl Fn(u32) -> DVec2) -> Cut {
     if triangles.is_empty() { Cut::Fan } else { Cut::Ears(triangles) }
 }
 
-/// Returns true if no corner of a polygon turns clockwise, and no edge runs back over the previous edge.
+/// Returns true if the polygon is convex: no corner turns clockwise, and no edge runs back over the previous edge.
 fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
-    // The first two corners come again at the end, so that the turns at the last and the first corner are tested too.
+    // The first two corners are repeated at the end, so that the turns at the last and the first corner are tested too.
     let again = corners(fan).take(2);
     let mut points = corners(fan).chain(again).map(flat);
     let Some(mut before) = points.next() else { return true };
@@ -87,13 +89,14 @@ fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
     true
 }
 
-/// A projection of a polygon along the axis nearest to its normal, from the side where the polygon is anticlockwise.
+/// A projection of a polygon onto a plane of two coordinate axes. It is seen along the third axis, which is nearest to
+/// the normal, from the side where the polygon is anticlockwise.
 struct Projection {
     origin: DVec3,
-    /// Scale that brings the farthest corner near 1. Otherwise squares of very small or large numbers would leave the
-    /// range of f64.
+    /// Factor that brings the farthest corner near a distance of 1. Otherwise squares of very small or large numbers
+    /// would leave the range of f64.
     scale: f64,
-    /// Indices of the two axes of the projection.
+    /// Indices of the two coordinate axes of the projection's plane.
     axes: [usize; 2],
 }
 
@@ -116,28 +119,29 @@ impl Projection {
     }
 }
 
-/// Returns the power of two that brings a length near 1, or `None` for 0.
+/// Returns the power of two by which a length must be multiplied to be near 1, or `None` for the length 0.
 fn scale_to_one(length: f64) -> Option<f64> {
     let (_, exponent) = libm::frexp(length);
-    // The smallest numbers would need a power above the range of f64. The largest power brings them near enough to 1.
+    // The smallest numbers would need a power of two above the range of f64. The largest f64 power brings them near
+    // enough to 1.
     (length > 0.0).then(|| libm::ldexp(1.0, -exponent.max(-1022)))
 }
 
-/// Returns the first corner, and the scale that brings the farthest corner near a distance of 1 from it. Returns `None`
-/// if all corners coincide.
+/// Returns the polygon's first corner, and the factor that brings its farthest corner near a distance of 1 from the
+/// first. Returns `None` if all corners coincide.
 fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f64)> {
     let origin = place(fan.first()?[0]);
     let farthest = corners(fan).map(|corner| (place(corner) - origin).abs().max_element()).fold(0.0, f64::max);
     Some((origin, scale_to_one(farthest)?))
 }
 
-/// Returns twice the area of a polygon as a vector along its normal. `from_first` returns positions relative to the
-/// first corner.
+/// Returns a vector along the normal of a polygon whose length is twice the area. `from_first` returns the position of
+/// a corner relative to the first corner.
 fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
     fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
 }
 
-/// Returns the normal of a polygon, of any length, or zero for a polygon without area.
+/// Returns a vector of any length along the normal of a polygon, or zero for a polygon without area.
 pub(super) fn normal(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> DVec3 {
     match near_one(fan, &place) {
         Some((origin, scale)) => area(fan, |corner| (place(corner) - origin) * scale),
@@ -145,7 +149,7 @@ pub(super) fn normal(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> DVec3 {
     }
 }
 
-/// Returns true if a triangle is higher than `least` times its longest edge.
+/// Returns true if a triangle is not too flat: its height is more than `least` times its longest edge.
 pub(super) fn has_area([a, b, c]: [DVec3; 3], least: f64) -> bool {
     let edges = [b - a, c - a];
     let longest = [edges[0], edges[1], c - b].map(|edge| edge.abs().max_element()).into_iter().fold(0.0, f64::max);

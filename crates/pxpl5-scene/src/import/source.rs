@@ -1,4 +1,4 @@
-//! The file being read: its name, its bytes, and functions for errors with positions in the file.
+//! The file being read: its name, its bytes, and functions that report errors with positions in the file.
 
 use crate::config::MAX_COORDINATE;
 use crate::error::{FilePlace, LoadError};
@@ -9,7 +9,7 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Returns an error for UTF-16 text, which is recognized by its byte order mark.
+    /// Returns an error if the file is UTF-16 text, which begins with a byte order mark.
     pub(crate) fn check_is_bytes_of_text(&self) -> Result<(), LoadError> {
         match self.bytes {
             [found @ 0xff, 0xfe, ..] | [found @ 0xfe, 0xff, ..] => {
@@ -19,8 +19,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Returns all lines with their numbers, from 1, without a byte order mark (U+FEFF). Lines may end in LF, CR LF or
-    /// CR alone. Lines are returned as bytes, because comments and names may be in any encoding.
+    /// Returns all lines with their numbers, counted from 1, without a byte order mark (U+FEFF). Lines may end in LF,
+    /// CR LF or CR alone. The lines are bytes, because comments and names may have any encoding.
     pub(crate) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + Clone {
         let text = self.bytes.strip_prefix(MARK).unwrap_or(self.bytes);
         let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
@@ -36,7 +36,7 @@ impl<'a> Source<'a> {
         LoadError::Truncated { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
     }
 
-    /// Returns the vector if all coordinates are numbers within the limit, and an error otherwise.
+    /// Returns the vector if all its coordinates are finite and within the limit, and an error otherwise.
     pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
         match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             None => Ok(v),
@@ -46,8 +46,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Returns the index if it is below `count`, and an error otherwise. `found` is the index as it is written in the
-    /// file.
+    /// Returns the index if it is below `count`, and an error otherwise. `found` is the index as the file states it,
+    /// for the error message.
     pub(crate) fn index(
         &self,
         at: FilePlace,
@@ -66,7 +66,7 @@ impl<'a> Source<'a> {
 /// The byte order mark U+FEFF in UTF-8.
 pub(crate) const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Returns a word of a file as text. A word that is not UTF-8 becomes a character that occurs in no number.
+/// Returns a word of a file as text. If the word is not UTF-8, the result is a character that occurs in no number.
 pub(crate) fn text(word: &[u8]) -> &str {
     std::str::from_utf8(word).unwrap_or("\u{fffd}")
 }
@@ -77,7 +77,7 @@ pub(crate) fn is_not_a_number(word: &str) -> bool {
     word.get(..3).is_some_and(|begin| begin.eq_ignore_ascii_case(b"nan")) || word.contains(&b'#')
 }
 
-/// Returns the beginning of a text, quoted, short enough for a message.
+/// Returns the beginning of a text in quotation marks, short enough for a message.
 pub(crate) fn excerpt(text: &str) -> String {
     let short: String = text.trim_end().chars().take(40).collect();
     format!("{short:?}")

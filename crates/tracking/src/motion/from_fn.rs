@@ -5,14 +5,14 @@ use crate::pose::Pose;
 use crate::time::PS_PER_S;
 use std::fmt;
 
-/// A motion whose pose a function of the time in seconds returns: see [`from_fn`].
+/// A motion defined by a function from the time in seconds to the pose of the head. [`from_fn`] creates such a motion.
 #[derive(Clone)]
 pub struct FnMotion<F>(F);
 
-/// Returns a motion from a function of the simulated time in seconds.
+/// Returns a motion whose pose is computed by a function of the simulated time in seconds.
 ///
-/// The function must return the same pose for the same time. Two functions whose poses agree at every eighth of a second of the first 64
-/// seconds count as the same motion ([`Motion::identify`]).
+/// The function must always return the same pose for the same time. [`Motion::identify`] compares poses at every eighth
+/// of a second of the first 64 seconds. Two functions with equal poses at all these instants count as the same motion.
 ///
 /// ```
 /// use glam::{DQuat, DVec3};

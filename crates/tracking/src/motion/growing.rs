@@ -7,26 +7,26 @@ use glam::DVec3;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use thiserror::Error;
 
-/// A recorded motion that can grow while a run uses it. Clones share the same recording.
+/// A recorded head motion to which samples can be added during a run. Clones share the same recording.
 ///
-/// After its last sample the head stands still until more samples arrive. The caller must keep the recording ahead of
-/// the simulation: every instant that the simulation reads must lie between two samples. Otherwise later samples would
-/// change a pose that has already been used.
+/// After the last sample the head stands still until more samples arrive. The caller must keep the recording ahead of
+/// the simulation: every instant that the simulation reads must lie between two samples. Otherwise a sample added later
+/// would change a pose that the simulation has already used.
 #[derive(Clone, Debug)]
 pub struct GrowingRecording(Arc<RwLock<Recording>>);
 
-/// The error for added samples that do not come after the last sample.
+/// The error for added samples whose first time stamp is not later than the last existing time stamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected samples after {last_ps} ps, found one at {found_ps} ps")]
 pub struct GrowthError {
-    /// Time of the last sample of the motion.
+    /// Time stamp of the last existing sample, ps.
     pub last_ps: u64,
-    /// Time of the first added sample.
+    /// Time stamp of the first added sample, ps.
     pub found_ps: u64,
 }
 
 impl GrowingRecording {
-    /// Creates a growing motion that begins with the samples of `begin`.
+    /// Creates a growing motion that starts with the samples of `begin`.
     #[must_use]
     pub fn new(begin: Recording) -> Self {
         Self(Arc::new(RwLock::new(begin.ending(End::Hold))))

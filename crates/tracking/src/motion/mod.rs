@@ -1,4 +1,4 @@
-//! The pose of the head at any instant: closed forms, a random generator with a seed, and replay of recorded traces.
+//! The pose of the head at any instant: formulas, random motion from a seed, and replay of recorded files.
 
 mod from_fn;
 mod growing;
@@ -34,24 +34,25 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
 
-/// Half the step of the default central differences: 50 us. At this step the error for a 2 Hz motion is 2 parts in
-/// 10^8.
+/// Half the time between the two poses of a central difference: 50 us. The relative error of the velocity of a 2 Hz
+/// motion is then 2 parts in 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// Time between the poses that the default [`Motion::identify`] writes, and their number.
+/// Time between the sampled poses that the default [`Motion::identify`] writes.
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// A motion of the head (or of a pendulum's bob) as a pure function of simulated time.
+/// The motion of a head as a pure function of simulated time. The pendulum's bob, the tracked weight of the latency
+/// rig, moves in this way too.
 pub trait Motion: Debug {
     /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;
 
-    /// Writes settings that distinguish this motion from every other motion. The names of experiments derive from these
+    /// Writes settings that distinguish this motion from all others. The names of experiments derive from these
     /// settings.
     ///
-    /// The default writes the poses at every eighth of a second of the first 64 seconds. A motion type must override
-    /// this method if two of its motions can differ only between or after these instants.
+    /// The default writes the poses at every eighth of a second of the first 64 seconds. Two motions of one type can
+    /// agree at all these instants but differ at others. Such a type must override this method.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"sampled");
         for sample in 0..SAMPLES {
@@ -59,15 +60,15 @@ pub trait Motion: Debug {
         }
     }
 
-    /// Returns the end of the motion (ps) if runs must not continue after it. Returns `None` if the motion continues
-    /// for ever or stands still at its end.
+    /// Returns the time (ps) at which the motion ends, if a run must stop there. Returns `None` if the motion continues
+    /// for ever or the head stands still at the end.
     fn ends_ps(&self) -> Option<u64> {
         None
     }
 
-    /// Returns the first gap before `until_ps`: the times (ps) of the last pose before the gap and of the first pose
-    /// after it. A run must not read poses within a gap. Returns `None` if the motion has no such gap, or if the head
-    /// stands still during the gap.
+    /// Returns the first gap of a recording that begins before `until_ps`. The two numbers are the times (ps) of the
+    /// last pose before the gap and of the first pose after the gap. A run must not read poses within a gap. Returns
+    /// `None` without a gap, or if the head stands still during gaps.
     fn gap_ps(&self, _until_ps: u64) -> Option<(u64, u64)> {
         None
     }
@@ -77,32 +78,35 @@ pub trait Motion: Debug {
         Vec::new()
     }
 
-    /// Returns the last known time of movement, ps. Tuning a filter needs only the motion up to this time. The default
-    /// is the end of the motion, if the motion has one.
+    /// Returns the latest time (ps) at which the head is known to move. The tuning of a prediction filter needs no
+    /// motion after this time. The default is the end of the motion, if the motion has an end.
     fn moves_until_ps(&self) -> Option<u64> {
         self.ends_ps()
     }
 
-    /// Returns true if the motion is known only up to the present of a run ([`GrowingRecording`]). Later poses must not be read
-    /// then.
+    /// Returns true if poses are added while a run goes on ([`GrowingRecording`]). No pose later than the present
+    /// instant of the run can then be read.
     fn grows(&self) -> bool {
         false
     }
 
-    /// Returns another motion of the same kind with different random numbers, or `None` if the motion has no variants.
-    /// Filters are tuned on the sibling, so that the evaluation uses a motion unknown to the filter.
+    /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
+    /// random numbers. Prediction filters are tuned on this other motion, so they do not know the motion on which they
+    /// are evaluated.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }
 
-    /// Returns the velocity in the world frame, m/s. The default is a central difference.
+    /// Returns the velocity of the head in the world frame, m/s. The default computes a central difference of two
+    /// poses.
     fn velocity(&self, t_ps: u64) -> DVec3 {
         let before = t_ps.saturating_sub(HALF_STEP_PS);
         let after = t_ps.saturating_add(HALF_STEP_PS);
         (self.pose(after).position - self.pose(before).position) / span_s(before, after)
     }
 
-    /// Returns the angular velocity in the world frame, rad/s. The default is a central difference.
+    /// Returns the angular velocity of the head in the world frame, rad/s. The default computes a central difference of
+    /// two poses.
     fn angular_velocity(&self, t_ps: u64) -> DVec3 {
         let before = t_ps.saturating_sub(HALF_STEP_PS);
         let after = t_ps.saturating_add(HALF_STEP_PS);
@@ -151,7 +155,7 @@ macro_rules! forward {
 
 forward!(&M, Box<M>, Arc<M>);
 
-/// Checks the closed forms of velocity and angular velocity against the pose alone.
+/// Compares the motion's velocity and angular velocity with differences of its poses.
 #[cfg(test)]
 fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
     #[derive(Debug)]

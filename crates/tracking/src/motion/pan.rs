@@ -6,17 +6,18 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::seconds;
 
-/// A head that turns about the vertical at constant speed, from `start` at time 0.
+/// A head that turns about the vertical axis at constant speed. The head has the pose `start` at time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pan {
     /// Pose of the head at time 0.
     pub start: Pose,
-    /// Yaw rate in degrees per second, positive to the left. 200 is a fast turn and 370 the peak of a head (LIST83).
+    /// Yaw rate in degrees per second, positive to the left. A fast head turn has 200, and the measured peak is 370
+    /// (LIST83).
     pub deg_per_s: f64,
 }
 
 impl Pan {
-    /// Creates a pan that starts from the identity pose.
+    /// Creates a turn at this yaw rate, positive to the left, from the identity pose at time 0.
     pub fn at(deg_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, deg_per_s }
     }

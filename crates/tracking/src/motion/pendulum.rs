@@ -11,12 +11,13 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
 
-/// An undamped pendulum that swings in the x-y plane, in closed form. At time 0 it is released at rest from
-/// `+amplitude`.
+/// An undamped pendulum that swings in the x-y plane, with the exact formula of its motion. At time 0 it is released at
+/// rest at the angle `+amplitude`.
 ///
 /// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), where cd is Jacobi's elliptic
-/// function. The exact period is 4 K(k) / w. The small-angle period 2 pi / w is shorter, by 0.77 % at 20 degrees. The
-/// bob hangs `arm` below the origin and turns with the arm.
+/// function. The exact period is 4 K(k) / w, where K is the complete elliptic integral. The small-angle period 2 pi / w
+/// is shorter, by 0.77 % at 20 degrees. The bob, which is the weight of the pendulum, hangs `arm` below the origin and
+/// turns with the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum {
     arm_m: f64,
@@ -57,17 +58,20 @@ impl Pendulum {
         TAU / self.natural_rad_per_s
     }
 
-    /// Returns the speed of the bob at the low point, m/s: 2 k sqrt(g arm), from the conservation of energy.
+    /// Returns the speed of the pendulum at its low point, m/s: 2 k sqrt(g arm) with k = sin(amplitude / 2). The
+    /// formula follows from the conservation of energy.
     pub fn low_point_speed(&self) -> f64 {
         2.0 * self.modulus * self.natural_rad_per_s * self.arm_m
     }
 
-    /// Returns the instant of low point `n`, which comes after (2 n + 1) quarter periods. Low point 0 is the first.
+    /// Returns the instant (ps) at which the pendulum passes its lowest point for the n-th time, counted from 0. This
+    /// is after 2 n + 1 quarters of the period.
     pub fn low_point_ps(&self, n: u64) -> u64 {
         nearest_ps((2.0 * n as f64 + 1.0) * self.period_s / 4.0)
     }
 
-    /// Returns the angle from the vertical (rad, positive towards +x) and its rate of change (rad/s).
+    /// Returns the pendulum's angle from the vertical (rad, positive towards +x) and the rate of change of the angle
+    /// (rad/s).
     pub fn angle(&self, t_ps: u64) -> (f64, f64) {
         let u = self.natural_rad_per_s * libm::fmod(seconds(t_ps), self.period_s);
         let (sn, cn, dn) = jacobi(u, self.modulus);
@@ -79,7 +83,8 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
-    /// Writes the arm and the modulus. Frequency and period follow from these two numbers.
+    /// Writes the length of the arm and the modulus, which is the sine of half the amplitude. Frequency and period
+    /// follow from these two numbers.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
@@ -100,16 +105,17 @@ impl Motion for Pendulum {
     }
 }
 
-/// Levels of the arithmetic-geometric mean. The mean converges quadratically, so 8 levels suffice for every modulus
-/// below 0.99999.
+/// Number of steps of the arithmetic-geometric mean. The mean converges quadratically, so 8 steps suffice for every
+/// modulus below 0.99999.
 const LEVELS: usize = 8;
 
-/// Returns the complete elliptic integral K(k) = pi / (2 agm(1, k')).
+/// Returns the complete elliptic integral K(k) = pi / (2 agm(1, k')), where agm is the arithmetic-geometric mean and k'
+/// = sqrt(1 - k^2).
 fn quarter_period(modulus: f64) -> f64 {
     FRAC_PI_2 / mean_ladder(modulus).0
 }
 
-/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each level.
+/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of its iteration.
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     let mut a = 1.0;
     let mut b = (1.0 - modulus * modulus).sqrt();
@@ -139,7 +145,8 @@ mod tests {
     use crate::time::PS_PER_S;
     use glam::DVec2;
 
-    /// Integrates angle'' = -(g / arm) sin(angle) with a Runge-Kutta method of order 4: an independent model.
+    /// Returns the pendulum's angle from integrating angle'' = -(g / arm) sin(angle) by a Runge-Kutta method of order
+    /// 4. The result is independent of the elliptic functions.
     fn integrate(arm: f64, amplitude_deg: f64, until_s: f64) -> f64 {
         let steps = 20_000;
         let h = until_s / steps as f64;

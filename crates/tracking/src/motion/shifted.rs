@@ -4,12 +4,13 @@ use super::Motion;
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 
-/// A motion that runs ahead of another motion by a constant time: the pose at t is the other's pose at t + `by_ps`.
+/// A motion that is ahead of another motion by a constant time. Its pose at time t is the other motion's pose at t +
+/// `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct AdvancedMotion<M> {
-    /// Original motion, which runs `by_ps` behind.
+    /// The original motion, which this motion shows earlier by `by_ps`.
     pub motion: M,
-    /// Time by which the original motion is advanced, ps.
+    /// Time by which this motion is ahead of the original motion, ps.
     pub by_ps: u64,
 }
 

@@ -8,27 +8,27 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::seconds;
 
-/// A head whose yaw and whose position along x are sine waves of one frequency about `start`. For this motion the
-/// effect of prediction is known in closed form ([`crate::predict::gain`]).
+/// A head whose yaw and whose position along x follow sine waves of one frequency around the pose `start`.
+/// [`crate::predict::gain`] has exact formulas for the effect of prediction on this motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid {
-    /// Pose in the middle of the motion, which is also the pose at time 0.
+    /// Pose of the head at the centre of both sine waves, which is also the pose at time 0.
     pub start: Pose,
     /// Frequency of the sine waves, Hz.
     pub hz: f64,
-    /// Amplitude of the yaw, degrees. The head first turns left.
+    /// Amplitude of the yaw, degrees. A positive value turns the head to the left first.
     pub yaw_deg: f64,
     /// Amplitude of the position along the world's x axis, metres.
     pub sway_m: f64,
 }
 
 impl Sinusoid {
-    /// Creates a motion with yaw alone, about the identity pose.
+    /// Creates a motion that changes only the yaw, with the identity pose at its centre.
     pub fn of_yaw(yaw_deg: f64, hz: f64) -> Self {
         Self { start: Pose::IDENTITY, hz, yaw_deg, sway_m: 0.0 }
     }
 
-    /// Returns sine and cosine of the phase at an instant.
+    /// Returns sine and cosine of the phase of both sine waves at an instant.
     fn phase(&self, t_ps: u64) -> (f64, f64) {
         libm::sincos(TAU * libm::fmod(self.hz * seconds(t_ps), 1.0))
     }

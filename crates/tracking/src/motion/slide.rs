@@ -5,7 +5,7 @@ use crate::identity::{SettingSink, write_pose, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// A head that moves straight at constant speed without turning, from `start` at time 0.
+/// A head that moves in a straight line at constant speed without turning. The head has the pose `start` at time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slide {
     /// Pose of the head at time 0.
@@ -15,7 +15,7 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// Creates a motion to the right from the identity pose.
+    /// Creates a motion to the right (+x) at this speed, from the identity pose at time 0.
     pub fn right_at(m_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, m_per_s: DVec3::X * m_per_s }
     }

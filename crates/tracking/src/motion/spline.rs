@@ -7,14 +7,15 @@ use crate::identity::SettingSink;
 use crate::random::{bell, bits, stream, unit};
 use crate::time::seconds;
 
-/// Variance of a spline with independent coefficients of variance 1: the integral of the squared quintic B-spline. This
-/// integral equals the centre value of the B-spline of degree 11, 655177 / 1663200.
+/// Variance of a spline whose coefficients are independent with variance 1. The variance is the integral of the squared
+/// quintic B-spline, which equals the centre value of the B-spline of degree 11: 655177 / 1663200.
 const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 
-/// Number of successive knots with the same activity level, so that calm and lively spells last some seconds.
+/// Number of successive knots with the same activity level, so that calm and lively periods last some seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
-/// The distribution of activity levels: gain = calm + (1 - calm) u^power with u uniform, scaled to a mean square of 1.
+/// The distribution of the random activity level of a head. The level is a factor of the motion's amplitude: calm + (1
+/// - calm) u^power with uniform u, scaled to a mean square of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Activity {
     pub(super) calm: f64,
@@ -34,11 +35,11 @@ impl Activity {
     }
 }
 
-/// Three independent random splines on one grid of knots.
+/// Three independent random splines with the same knots, one for each coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
     spacing_ps: u64,
-    /// Standard deviation of each coefficient.
+    /// Standard deviation of the spline coefficients, for each of the three coordinates.
     scale: DVec3,
     activity: Activity,
     seeds: [u64; 3],
@@ -46,14 +47,14 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Creates splines with these standard deviations. Splines with the same `spells` have their lively spells at the
-    /// same times.
+    /// Creates splines whose values have these standard deviations. Splines with the same seed `spells` have their
+    /// lively periods at the same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
     }
 
-    /// Writes the spline's parameters as one setting.
+    /// Writes the numbers that determine the splines as one setting.
     pub(super) fn identify(&self, key: &str, settings: &mut SettingSink) {
         let Self { spacing_ps, scale, activity, seeds, spells } = self;
         let Activity { calm, power } = activity;
@@ -62,7 +63,7 @@ impl Spline {
         settings(key, &format_args!("{spacing_ps} {x} {y} {z} {calm} {power} {a} {b} {c} {spells}"));
     }
 
-    /// Returns the values at `t_ps` and their rates per second.
+    /// Returns the three values of the splines at `t_ps`, and their rates of change per second.
     pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
         // Six B-splines overlap every knot interval.
         let knot = t_ps / self.spacing_ps;
@@ -140,7 +141,7 @@ mod tests {
 
     #[test]
     fn the_variance_is_the_square_of_the_deviation() {
-        // 200,000 knots; neighbouring values are correlated, so the standard error is about 0.5 %.
+        // The mean covers 200,000 knots. Neighbouring values are correlated, so the standard error is about 0.5 %.
         for activity in [EVEN, Activity { calm: 0.2, power: 3 }] {
             let spline = Spline::new(1000, DVec3::new(1.0, 2.0, 0.5), activity, 9, 4);
             let sum = (0..400_000).map(|i| spline.at(i * 500).0).fold(DVec3::ZERO, |s, x| s + x * x);

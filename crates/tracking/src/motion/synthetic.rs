@@ -10,41 +10,44 @@ use crate::random::stream;
 use crate::rotation;
 use crate::time::nearest_ps;
 
-/// One frequency band of the motion generator: three quintic B-splines with random coefficients. The power falls as
-/// sinc^12(f spacing), so 99.9 % of the power lies below the frequency 0.53 / spacing.
+/// One frequency band of random head motion: three quintic B-splines with random coefficients. With f the frequency,
+/// the power falls as sinc^12(f spacing). Thus 99.9 % of the power lies below the frequency 0.53 / spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Band {
-    /// Seconds between knots, 0.01 to 1000.
+    /// Time between two knots of the splines, seconds, 0.01 to 1000.
     pub spacing_s: f64,
-    /// Standard deviations: yaw, pitch and roll in degrees, or x, y and z in metres.
+    /// Standard deviations of the motion: yaw, pitch and roll in degrees, or x, y and z in metres.
     pub deviation: [f64; 3],
-    /// Ratio of the calmest spell's level to the liveliest, 0 to 1. A value of 1 makes all spells alike.
+    /// Amplitude of the calmest periods relative to the liveliest, 0 to 1. A value of 1 makes all periods equally
+    /// lively.
     pub calm: f64,
-    /// Exponent that makes lively spells rare, 1 to 16: level = calm + (1 - calm) u^power with u uniform.
+    /// Exponent that makes lively periods rare, 1 to 16. The amplitude of a period is calm + (1 - calm) u^power with u
+    /// uniform in 0 to 1.
     pub power: u32,
 }
 
-/// Number of the random stream from which a sibling's seed is drawn.
+/// Index of the random stream from which the seed of another motion of the same kind is drawn ([`Motion::sibling`]).
 const SIBLING: u64 = 10;
 
-/// Settings of [`Synthetic`]: one band for each kind of movement, and the mean position of the head.
+/// Settings of the random head motion [`Synthetic`]: one frequency band for each kind of movement, and the mean
+/// position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SyntheticConfig {
-    /// Slow turns of the body, which make up nearly all of the angle.
+    /// Slow turns of the body, which cause most of the range of the head's angle.
     pub turn: Band,
-    /// Quick glances, which make up nearly all of the angular speed.
+    /// Quick glances, which cause most of the head's angular speed.
     pub glance: Band,
-    /// Translation of the head about `centre_m`.
+    /// Translation of the head around the mean position `centre_m`.
     pub walk: Band,
     /// Mean position of the head in the world, metres.
     pub centre_m: [f64; 3],
 }
 
 impl SyntheticConfig {
-    /// Returns settings fitted to recorded headset traces ([`crate::config::HeadSpeeds`]). The deviations are assumed.
-    /// The resulting statistics are published, and tests check them.
+    /// Returns settings whose statistics agree with recorded headset use ([`crate::config::HeadSpeeds`]). The standard
+    /// deviations are assumed. The resulting head speeds are published, and tests compare them.
     pub fn recorded_use() -> Self {
         Self {
             turn: Band { spacing_s: 2.6, deviation: [47.0, 4.0, 1.0], calm: 0.6, power: 1 },
@@ -55,8 +58,8 @@ impl SyntheticConfig {
     }
 }
 
-/// Random, band-limited head motion from a seed, without period and without drift. Yaw, pitch, roll and position are
-/// sums of random splines, so the pose at any instant takes constant time and memory.
+/// Random, band-limited head motion from a seed, which neither repeats nor drifts. Yaw, pitch, roll and position are
+/// sums of random splines. Computing a pose takes the same time and memory at any instant.
 #[derive(Clone, Debug)]
 pub struct Synthetic {
     config: SyntheticConfig,
@@ -68,7 +71,7 @@ pub struct Synthetic {
 }
 
 impl Synthetic {
-    /// Creates a generator. The same settings and seed give the same motion on every host.
+    /// Creates a random head motion. The same settings and seed give the same motion on every host.
     ///
     /// # Errors
     ///
@@ -89,12 +92,12 @@ impl Synthetic {
         })
     }
 
-    /// Creates a generator fitted to recorded headset use.
+    /// Creates a random head motion whose speeds agree with recorded headset use.
     pub fn recorded_use(seed: u64) -> Self {
         Self::new(&SyntheticConfig::recorded_use(), seed).expect("the preset is in range")
     }
 
-    /// Returns yaw (not wrapped), pitch and roll in radians, and their rates in rad/s.
+    /// Returns yaw, pitch and roll in radians, and their rates in rad/s. Yaw counts full turns and can exceed pi.
     pub fn yaw_pitch_roll(&self, t_ps: u64) -> (DVec3, DVec3) {
         let turn = self.turn.at(t_ps);
         let glance = self.glance.at(t_ps);

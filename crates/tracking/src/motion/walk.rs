@@ -9,39 +9,42 @@ use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Distance on the path from the head to the point at which it looks, m. Assumed. A head turns towards a corner before
-/// it reaches the corner, at up to 76 degrees per second for a square corner at 1 m/s. A real head can turn this fast.
+/// Distance along the path from a walking head to the point at which it looks, m. Assumed. The head turns towards a
+/// corner before it reaches the corner. At 1 m/s and a square corner it turns at up to 76 degrees per second, which a
+/// real head can do.
 const AHEAD_M: f64 = 1.5;
 
-/// Least distance between two successive corners, m. A shorter leg has no reliable direction.
+/// Least distance between two successive corners of a path, m. The direction between two nearer corners would be
+/// inaccurate.
 const LEAST_LEG_M: f64 = 1e-3;
 
-/// A head that walks at constant speed along a closed path, from the first corner at time 0. The head looks at a point
-/// of the path ahead, or also looks around if [`Self::with_glances`] was called.
+/// A head that walks at constant speed along a closed path. It is at the first corner at time 0. The head looks at a
+/// point of the path ahead. After [`Self::with_glances`] it also looks around.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,
-    /// Distance along the path from the first corner to each corner, followed by the length of the path, m.
+    /// Distance along the path from the first corner to each corner, m. The last element is the length of the closed
+    /// path.
     ways: Vec<f64>,
     m_per_s: f64,
     glances: Option<Synthetic>,
 }
 
 impl Walk {
-    /// Creates a walk along these corners and back to the first, at -100 to 100 m/s. A negative speed reverses the
-    /// direction.
+    /// Creates a walk along these corners and back to the first corner, at a speed of -100 to 100 m/s. A negative speed
+    /// reverses the direction.
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. A path of fewer than two corners,
-    /// or with successive corners less than 1 mm apart, is an error too.
+    /// [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. Fewer than two corners, or
+    /// successive corners less than 1 mm apart, are errors too.
     pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
         SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;
         for coordinate in corners.iter().flat_map(DVec3::to_array) {
             SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
         }
         SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
-        // Sum up the legs, including the leg from the last corner back to the first.
+        // Sum up the lengths of the straight parts, including the part from the last corner back to the first.
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
@@ -51,7 +54,8 @@ impl Walk {
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
     }
 
-    /// Returns the same walk with a head that also looks around, as [`Synthetic::recorded_use`] of this seed does.
+    /// Returns the same walk with a head that also looks around. The glances are those of [`Synthetic::recorded_use`]
+    /// with this seed.
     #[must_use]
     pub fn with_glances(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));
@@ -64,26 +68,26 @@ impl Walk {
         self.ways[self.corners.len()]
     }
 
-    /// Returns the position at a distance along the path from the first corner, m. Distances beyond one round and
-    /// negative distances wrap.
+    /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or one longer
+    /// than the closed path, wraps around.
     #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());
-        // Find the leg of the path and the fraction of this leg.
+        // Find the straight part of the path, and the fraction of this part.
         let leg = self.ways.partition_point(|begin| *begin <= way).clamp(1, self.corners.len()) - 1;
         let share = ((way - self.ways[leg]) / (self.ways[leg + 1] - self.ways[leg])).clamp(0.0, 1.0);
         self.corners[leg].lerp(self.corners[(leg + 1) % self.corners.len()], share)
     }
 }
 
-/// Reduces a distance to one round of the path.
+/// Returns a distance modulo the length of one round of the path.
 fn rounded(way: f64, round: f64) -> f64 {
     let rest = libm::fmod(way, round);
     if rest < 0.0 { rest + round } else { rest }
 }
 
-/// Returns the orientation of an upright head at `eye` that looks at `point`. If the two coincide, the head looks along
-/// -z.
+/// Returns the orientation of an upright head at `eye` that looks at `point`. If both positions are equal, the head
+/// looks along -z.
 fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
     let back = (eye - point).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);

@@ -2,21 +2,23 @@ use glam::{DQuat, DVec3};
 
 use crate::rotation;
 
-/// A filter of one quantity: position or orientation. Updates come with rising times, which the gate ensures.
+/// A prediction filter of one quantity, either position or orientation. The times of its updates must rise, which the
+/// check of the reports ensures.
 pub(super) trait Channel<T>: Send {
-    /// Forgets all past values and starts from this value.
+    /// Discards all past values and starts again from this value.
     fn restart(&mut self, t_ps: u64, value: T);
     /// Adds a measured value.
     fn update(&mut self, t_ps: u64, value: T);
-    /// Returns the value `dt_s` after the last update, or before it for a negative `dt_s`.
+    /// Returns the predicted value at `dt_s` seconds after the last update. A negative `dt_s` gives an earlier value.
     fn extrapolate(&self, dt_s: f64) -> T;
 }
 
-/// Values whose differences are vectors: positions (m) and orientations (rotation vectors, rad).
+/// A quantity whose differences are vectors: a position (difference in m) or an orientation (difference as a rotation
+/// vector, rad).
 pub(super) trait VectorDifference: Copy + Send {
-    /// Returns the vector from `origin` to `self`.
+    /// Returns the difference from `origin` to `self` as a vector.
     fn since(self, origin: Self) -> DVec3;
-    /// Returns `self` moved by a vector.
+    /// Returns the quantity after a change by a vector.
     fn moved(self, by: DVec3) -> Self;
 }
 

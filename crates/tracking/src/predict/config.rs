@@ -11,25 +11,26 @@ use crate::config as table;
 use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
 
-/// Least noise that a Kalman filter may assume. A noise of 0 would make the covariance singular.
+/// Least position noise that a Kalman filter may assume, m. A noise of 0 would make the covariance matrix singular.
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
-/// A prediction method: the filter that turns reports into a pose at another instant.
+/// A prediction method, which computes a pose at another instant from the tracker's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictorKind {
-    /// No prediction: the pose of the last report.
+    /// No prediction: the method returns the pose of the last report.
     None,
-    /// Last report plus velocity x time.
+    /// Constant velocity: the last reported pose plus velocity x time.
     ConstantVelocity,
-    /// Last report plus velocity x time plus half the acceleration x time squared.
+    /// Constant acceleration: the last reported pose plus velocity x time plus half the acceleration x time squared.
     ConstantAcceleration,
-    /// Linear Kalman filter [p, v, a] for position, extended Kalman filter [q, omega, domega] for orientation.
+    /// Two Kalman filters. The linear one for position has the state [p, v, a], and the extended one for orientation
+    /// [q, omega, domega].
     Kalman,
 }
 
 impl PredictorKind {
-    /// All prediction methods, the simplest first.
+    /// All prediction methods in order of complexity, the simplest first.
     pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
 
     /// Returns the name of the method in experiment files and tables.
@@ -43,27 +44,32 @@ impl PredictorKind {
     }
 }
 
-/// Settings of a predictor: the filter, and its assumptions about the noise of reports and about the motion.
+/// Settings of a predictor: the method, and its assumptions about the noise of reports and the motion of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PredictorConfig {
-    /// Prediction method that is built from these settings.
+    /// Prediction method of the predictor.
     pub kind: PredictorKind,
-    /// Distance in reports between the points of a position difference, 1 to 16. Kalman filters do not use it.
+    /// Number of reports, 1 to 16, from one position to the other when a velocity is computed as a difference. Kalman
+    /// filters ignore this number.
     pub position_baseline: u32,
-    /// Distance in reports between the points of an orientation difference, 1 to 16. Kalman filters do not use it.
+    /// Number of reports, 1 to 16, from one orientation to the other when an angular velocity is computed as a
+    /// difference. Kalman filters ignore this number.
     pub orientation_baseline: u32,
-    /// Assumed position noise of a report, rms of each axis, m.
+    /// Random position error of a report that the filter assumes, rms along each axis, m.
     pub position_noise_m: f64,
-    /// Assumed orientation noise of a report, rms about each axis, degrees.
+    /// Random orientation error of a report that the filter assumes, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Root of the spectral density of the white jerk of positions, m/s^3/sqrt(Hz).
+    /// Assumed strength of random changes of the head's acceleration, m/s^3/sqrt(Hz): the root of the spectral density
+    /// of white jerk.
     pub position_jerk: f64,
-    /// Root of the spectral density of the white jerk of orientations, rad/s^3/sqrt(Hz).
+    /// Assumed strength of random changes of the head's angular acceleration, rad/s^3/sqrt(Hz): the root of the
+    /// spectral density of white jerk.
     pub orientation_jerk: f64,
-    /// Longest prediction, ps. Beyond this horizon the predictor returns the last pose.
+    /// Longest time ahead for which the predictor extrapolates, ps. For later instants the predictor returns the last
+    /// reported pose.
     pub horizon_ps: u64,
-    /// Assumptions of Kalman filters about the motion before the first report.
+    /// Assumptions of Kalman filters about the head's motion before the first report.
     #[serde(default)]
     pub start: Start,
     /// Limits by which the predictor accepts or rejects reports.
@@ -71,17 +77,18 @@ pub struct PredictorConfig {
     pub gate: table::Gate,
 }
 
-/// Standard deviations that a Kalman filter assumes at its start, about a mean of rest.
+/// Standard deviations of the head's motion before the first report, as a Kalman filter assumes them. The assumed mean
+/// is a still head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
-    /// Standard deviation of the speed, m/s.
+    /// Standard deviation of the head's speed before the first report, m/s.
     pub speed: f64,
-    /// Standard deviation of the acceleration, m/s^2.
+    /// Standard deviation of the head's acceleration before the first report, m/s^2.
     pub acceleration: f64,
-    /// Standard deviation of the angular velocity, rad/s.
+    /// Standard deviation of the head's angular velocity before the first report, rad/s.
     pub turn: f64,
-    /// Standard deviation of the angular acceleration, rad/s^2.
+    /// Standard deviation of the head's angular acceleration before the first report, rad/s^2.
     pub turn_acceleration: f64,
 }
 
@@ -107,12 +114,12 @@ const fn default_gate() -> table::Gate {
 }
 
 impl PredictorConfig {
-    /// Returns settings of a predictor that assumes the noise of this tracker.
+    /// Returns settings of a predictor for this tracker, with the noise that the tracker really has.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
     }
 
-    /// Returns the settings of [`Self::for_tracker`] with numbers from these tables.
+    /// Returns the settings of [`Self::for_tracker`], but with the numbers from these tables.
     pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         let filter = &tables.filter;
         Self {
@@ -153,7 +160,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table, with one of the two baselines.
+    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports), so the
+    /// caller chooses the position's or the orientation's.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
@@ -197,7 +205,7 @@ impl PredictorConfig {
     }
 }
 
-/// Returns `x * x`. Hosts may round a power function differently, but not a product.
+/// Returns `x * x`. All hosts round a product equally, but may round a power function differently.
 fn square(x: f64) -> f64 {
     x * x
 }

@@ -4,7 +4,7 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerModel;
 
-/// Errors of predicted poses against the true motion.
+/// Differences between predicted poses and the true poses of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PredictionError {
     /// Number of evaluated predictions.
@@ -31,8 +31,8 @@ impl PredictionError {
     }
 }
 
-/// Computes the errors of a predictor for each horizon, over the reports whose orientation was true in [from, until). A
-/// horizon counts from the instant at which the last report was true.
+/// Computes the errors of a predictor for each prediction interval. It evaluates the reports whose orientation was true
+/// in [from, until). A prediction interval counts from the instant at which the last report was true.
 ///
 /// # Errors
 ///

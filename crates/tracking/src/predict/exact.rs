@@ -7,10 +7,11 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// A predictor that knows the true motion but not the true pose: it moves the newest report along the true motion.
+/// A predictor that knows the true motion. It moves the newest reported pose along the true motion and keeps the error
+/// of the report.
 ///
-/// No real machine has this knowledge. The predictor is a reference for all others: the errors of its poses come from
-/// the reports alone, not from the prediction.
+/// No real machine knows the true motion. The predictor is a reference for all others: the errors of its poses come
+/// only from the tracker, not from the prediction.
 #[derive(Clone, Debug)]
 pub struct ExactPredictor<M> {
     motion: M,
@@ -19,7 +20,7 @@ pub struct ExactPredictor<M> {
 }
 
 impl<M: Motion> ExactPredictor<M> {
-    /// Creates a predictor for this motion, with the limits of a gate for the reports.
+    /// Creates a predictor for this true motion. `gate` has the limits by which reports are accepted or rejected.
     pub fn new(motion: M, gate: table::Gate) -> Self {
         Self { motion, gate: Gate::new(gate), newest: None }
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::channel::{Channel, VectorDifference};
 use crate::time::span_s;
 
-/// The highest derivative that an extrapolation uses.
+/// The order of an extrapolation: the highest derivative that it uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// No derivative: the prediction is the last value.
@@ -16,13 +16,13 @@ pub(super) enum Order {
     Second,
 }
 
-/// The Newton polynomial through the last value and one or two earlier values, `baseline` reports apart. The
-/// extrapolation is exact for motions of its order, even if the reports are not evenly spaced.
+/// An extrapolation by the Newton polynomial through the last value and one or two earlier values, `baseline` reports
+/// apart. The result is exact for polynomial motions up to its order, even for reports at irregular times.
 #[derive(Clone, Debug)]
 pub(super) struct Extrapolation<T> {
     order: Order,
     baseline: usize,
-    /// Past times (ps) and values, the newest first. The queue is never empty.
+    /// Past values with their times (ps), the newest first. The queue always has a value.
     past: VecDeque<(u64, T)>,
 }
 
@@ -31,7 +31,8 @@ impl<T: VectorDifference> Extrapolation<T> {
         Self { order, baseline, past: VecDeque::from([(0, start)]) }
     }
 
-    /// Returns time (s, negative) and offset of an earlier value, relative to the newest value.
+    /// Returns the time and the value of an earlier report, both relative to the newest report. The time is negative,
+    /// in seconds.
     fn point(&self, age: usize) -> (f64, DVec3) {
         let (newest_ps, newest) = self.past[0];
         let (t_ps, value) = self.past[age];
@@ -82,7 +83,7 @@ mod tests {
     use crate::time::PS_PER_MS;
     use glam::DQuat;
 
-    /// Uneven times of reports, ms.
+    /// Times of reports at irregular intervals, ms.
     const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
 
     fn fed<T: VectorDifference>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {
@@ -148,7 +149,8 @@ mod tests {
 
     #[test]
     fn sinusoids_are_predicted_with_the_gains_of_the_derivatives() {
-        // Reports 0.1 ms apart: differences come within w x 0.1 ms = 0.1 % of derivatives. 2 Hz, 100 ms.
+        // Reports are 0.1 ms apart, so differences agree with derivatives to w x 0.1 ms = 0.1 %. Frequency 2 Hz,
+        // prediction 100 ms.
         use crate::predict::gain::{constant_acceleration, constant_velocity};
         let w = core::f64::consts::TAU * 2.0;
         let p = 0.1;

@@ -1,15 +1,15 @@
-//! The effect of prediction by derivatives on a sinusoidal motion, in closed form.
+//! Exact formulas for the effect of prediction on a sinusoidal motion.
 //!
 //! A prediction of x = e^(j w t) by p seconds with exact derivatives multiplies x by a gain G(w p). A perfect
-//! prediction multiplies it by e^(j w p). The arguments of the functions are w p in radians: 2 pi x frequency x
+//! prediction multiplies x by e^(j w p). The arguments of the functions are w p in radians: 2 pi x frequency x
 //! prediction time.
 
-/// The complex number by which a prediction multiplies a sinusoid e^(j w t), without unit.
+/// The complex factor by which a prediction multiplies a sinusoidal motion e^(j w t), without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
-    /// Real part: the component in phase with the motion.
+    /// Real part of the factor: the component in phase with the motion.
     pub re: f64,
-    /// Imaginary part: the component that leads the motion by a quarter of its period.
+    /// Imaginary part of the factor: the component that is a quarter of a period ahead of the motion.
     pub im: f64,
 }
 
@@ -19,7 +19,8 @@ impl Gain {
         libm::hypot(self.re, self.im)
     }
 
-    /// Returns the phase by which the prediction leads the motion, radians, -pi to pi.
+    /// Returns the phase of the predicted motion relative to the present motion, radians, -pi to pi. A positive phase
+    /// is ahead.
     pub fn phase(self) -> f64 {
         libm::atan2(self.im, self.re)
     }
@@ -31,24 +32,24 @@ pub fn perfect(wp: f64) -> Gain {
     Gain { re, im }
 }
 
-/// Returns the gain without prediction: 1 for every w p, because the last report is shown unchanged.
+/// Returns the gain without prediction. It is 1 for every w p, because the last reported pose is shown unchanged.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }
 
-/// Returns the gain of x + v p: 1 + j w p.
+/// Returns the gain of a prediction with constant velocity, x + v p. The gain is 1 + j w p.
 pub fn constant_velocity(wp: f64) -> Gain {
     Gain { re: 1.0, im: wp }
 }
 
-/// Returns the gain of x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2. The magnitude of this gain is sqrt(1 + (w p)^4 /
-/// 4).
+/// Returns the gain of a prediction with constant acceleration, x + v p + a p^2 / 2. The gain is 1 + j w p - (w p)^2 /
+/// 2, with a magnitude of sqrt(1 + (w p)^4 / 4).
 pub fn constant_acceleration(wp: f64) -> Gain {
     Gain { re: 1.0 - wp * wp / 2.0, im: wp }
 }
 
-/// Returns the error relative to the motion's amplitude, |e^(j w p) - G|. Without prediction it is 2 sin(w p / 2). The
-/// first order gives about (w p)^2 / 2, and the second order about (w p)^3 / 6.
+/// Returns the prediction error relative to the motion's amplitude, |e^(j w p) - G|. Without prediction the error is 2
+/// sin(w p / 2). The first order gives about (w p)^2 / 2, and the second order about (w p)^3 / 6.
 pub fn relative_error(gain: fn(f64) -> Gain, wp: f64) -> f64 {
     let wanted = perfect(wp);
     let got = gain(wp);
@@ -60,7 +61,8 @@ mod tests {
     use super::*;
     use core::f64::consts::TAU;
 
-    /// Frequency (Hz), prediction (s), and the published errors of no, first-order and second-order prediction.
+    /// Frequency (Hz), prediction time (s), and the published relative errors of no, first-order and second-order
+    /// prediction.
     const PUBLISHED: [(f64, f64, [f64; 3]); 4] = [
         (1.0, 0.05, [0.313, 0.049, 0.005]),
         (1.0, 0.10, [0.618, 0.195, 0.041]),

@@ -3,27 +3,28 @@ use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::TrackerReport;
 
-/// Greatest difference between the squared length of a reported quaternion and 1.
+/// Greatest difference between 1 and the squared length of a reported quaternion. Reports outside this limit are
+/// rejected.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Counts of the reports that a predictor received, by its decision.
+/// Numbers of reports that a predictor has received, by its decision to accept or reject them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReportCounts {
-    /// Accepted reports, which reached the filters.
+    /// Number of accepted reports, which the filters used.
     pub accepted: u64,
-    /// Rejected reports with NaN, infinity or a quaternion that is not of unit length.
+    /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
-    /// Rejected reports that are not newer than the report before, or follow it by less than [`table::Gate`]'s
-    /// `interval`.
+    /// Number of reports rejected because of their time stamp. They were not newer than the last accepted report, or
+    /// followed it by less than [`table::Gate`]'s `interval`.
     pub untimely: u64,
-    /// Rejected reports that imply a motion faster than a head can move.
+    /// Number of reports rejected because a head cannot move so fast.
     pub jumps: u64,
-    /// Accepted reports that restarted the filters: the first report, the first after a gap, and one that confirmed a
-    /// jump.
+    /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
+    /// and a report that confirmed a jump.
     pub restarts: u64,
 }
 
-/// The gate's decision about a report.
+/// The decision to reject a report, to use it, or to restart the filters with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -31,7 +32,7 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// The gate that decides which reports are possible and counts every decision.
+/// A check in front of the filters that rejects impossible reports and counts every decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,
@@ -62,7 +63,7 @@ impl Gate {
             return Verdict::Reject;
         }
         let Some(last) = self.last else { return Verdict::Restart };
-        // Position and orientation have times of their own. The shorter of the two spans limits the possible motion.
+        // Position and orientation have separate time stamps. The shorter of the two spans limits the possible motion.
         let dt_s = span_s(last.measured_ps, report.measured_ps)
             .min(span_s(last.position_measured_ps, report.position_measured_ps));
         if dt_s < self.limits.interval / 1e3 {

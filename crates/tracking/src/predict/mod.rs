@@ -21,13 +21,14 @@ pub use tune::{Training, Tuned, training_seed, tune};
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// A predictor, which turns late reports into a pose at a wanted instant.
+/// A predictor, which computes the pose at any wanted instant from past tracker reports.
 pub trait Predictor: Send {
-    /// Adds a report, in order of arrival. Impossible reports are rejected and counted, and cause no error.
+    /// Adds a report, in order of arrival. An impossible report is rejected and counted, but causes no error.
     fn observe(&mut self, report: &TrackerReport);
 
-    /// Returns the predicted pose at `at_ps`. Before the first accepted report the result is [`Pose::IDENTITY`]. If the
-    /// last report is farther away than the horizon of the settings, the result is the last pose.
+    /// Returns the predicted pose at `at_ps`. Before the first accepted report the result is [`Pose::IDENTITY`]. If
+    /// `at_ps` is later than the last report by more than the longest prediction of the settings, the result is the
+    /// last pose.
     fn predict(&self, at_ps: u64) -> Pose;
 
     /// Returns the counts of accepted and rejected reports so far.

@@ -5,11 +5,11 @@ use super::position_kalman::{NoiseModel, symmetric, white_jerk};
 use crate::rotation;
 use crate::time::span_s;
 
-/// Longest turn between two reports, rad, for which a first-order approximation of the turn is used. A peak turn
+/// Longest turn between two reports for which the turn may be approximated to first order, rad. The fastest head turn
 /// (LIST83) at 120 Hz is 0.05 rad.
 const LARGEST_LINEAR_TURN: f64 = 1.0;
 
-/// The covariance of (rotation error, angular velocity, angular acceleration): 9 x 9, stored as its six distinct
+/// The 9 x 9 covariance of (rotation error, angular velocity, angular acceleration), stored as its six distinct 3 x 3
 /// blocks.
 #[derive(Clone, Copy, Debug)]
 struct Covariance {
@@ -21,7 +21,7 @@ struct Covariance {
     acceleration: DMat3,
 }
 
-/// Extended Kalman filter with state [q, omega, domega], driven by white angular jerk.
+/// Extended Kalman filter for orientation with state [q, omega, domega], driven by white angular jerk.
 ///
 /// The error of the quaternion is a world-frame rotation vector (the multiplicative form). The covariance is therefore
 /// 9 x 9 and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
@@ -47,8 +47,8 @@ impl OrientationKalman {
         }
     }
 
-    /// Returns the rotation vector after `dt` seconds of constant angular acceleration: the first two terms of the
-    /// Magnus series. The second term accounts for the turning axis.
+    /// Returns the turn (rotation vector) in `dt` seconds at constant angular acceleration: the first two terms of the
+    /// Magnus series. The second term accounts for the changing axis of rotation.
     fn turn(&self, dt: f64) -> DVec3 {
         let sideways = self.rate.cross(self.acceleration) * (dt * dt * dt / 12.0);
         self.rate * dt + self.acceleration * (dt * dt / 2.0) - sideways
@@ -84,14 +84,14 @@ impl Covariance {
         }
     }
 
-    /// Computes F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]. R rotates old errors with the head. A and B
-    /// integrate the errors of rate and acceleration, rotated by the rest of `turn`, to first order in `turn`.
+    /// Replaces the covariance P by F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]. R rotates old errors with the
+    /// head. A and B integrate the errors of angular velocity and acceleration to first order in `turn`.
     fn predict(&mut self, turn: DVec3, dt: f64, jerk: f64) {
         let r = DMat3::from_quat(rotation::exp(turn));
         let small = turn.clamp_length_max(LARGEST_LINEAR_TURN);
         let a = (DMat3::IDENTITY + cross(small / 2.0)) * dt;
         let b = (DMat3::IDENTITY + cross(small / 3.0)) * (dt * dt / 2.0);
-        // The first block row of F P. The other two rows follow from rate and acceleration alone.
+        // The first block row of F P. The other two rows contain only the terms of rate and acceleration.
         let to_angle = r * self.angle + a * self.angle_rate.transpose() + b * self.angle_acceleration.transpose();
         let to_rate = r * self.angle_rate + a * self.rate + b * self.rate_acceleration.transpose();
         let to_acceleration = r * self.angle_acceleration + a * self.rate_acceleration + b * self.acceleration;
@@ -106,13 +106,14 @@ impl Covariance {
         self.acceleration += isotropic(q.z_axis.z);
     }
 
-    /// Returns S^-1 times a surprise, with S = P + r 1.
+    /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r 1, with the measurement
+    /// variance r.
     fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
         (self.angle + isotropic(measurement)).inverse() * surprise
     }
 
-    /// Computes P - P H^T S^-1 H P. In the rows of the angle, 1 - P S^-1 is written as r S^-1, which keeps its sign
-    /// under rounding.
+    /// Corrects the covariance to P - P H^T S^-1 H P. In the rows of the angle, 1 - P S^-1 is written as r S^-1, so
+    /// that rounding cannot make it negative.
     fn correct(&mut self, measurement: f64) {
         let inverse = symmetric((self.angle + isotropic(measurement)).inverse());
         let rate_gain = self.angle_rate.transpose() * inverse;
@@ -143,7 +144,7 @@ impl Channel<DQuat> for OrientationKalman {
     }
 }
 
-/// Returns the covariance of three independent axes with this variance.
+/// Returns the covariance of three independent axes that all have this variance.
 fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }

@@ -3,19 +3,19 @@ use glam::{DMat3, DVec3};
 use super::channel::Channel;
 use crate::time::span_s;
 
-/// Assumptions of a filter about noise.
+/// Assumptions of a Kalman filter about measurement noise and motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoiseModel {
-    /// Variance of the measurement noise of each axis.
+    /// Variance of the measurement noise along each axis.
     pub(super) measurement: f64,
     /// Spectral density of the white jerk of the motion.
     pub(super) jerk: f64,
-    /// Variances of velocity and acceleration at the start.
+    /// Variances of velocity and acceleration before the first measurement.
     pub(super) start: (f64, f64),
 }
 
-/// Returns the growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1.
-/// The growth is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
+/// Returns the increase over `dt` seconds of the covariance of value, velocity and acceleration, caused by white jerk
+/// of density 1. The increase is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
     let d2 = dt * dt;
     let d3 = dt * dt * dt;
@@ -26,8 +26,8 @@ pub(super) fn white_jerk(dt: f64) -> DMat3 {
     )
 }
 
-/// Linear Kalman filter with state [p, v, a] for each axis, driven by white jerk. The axes have the same noise and
-/// times, so they share one covariance.
+/// Linear Kalman filter with state [p, v, a] for each axis, driven by white jerk. All axes have the same noise and
+/// measurement times, so they share one covariance.
 #[derive(Clone, Debug)]
 pub(super) struct PositionKalman {
     belief: NoiseModel,
@@ -54,7 +54,8 @@ impl PositionKalman {
         self.covariance = symmetric(step * self.covariance * step.transpose() + white_jerk(dt) * self.belief.jerk);
     }
 
-    /// Corrects state and covariance in Joseph's form, which keeps the covariance positive definite under any rounding.
+    /// Corrects state and covariance by a measurement. Joseph's form keeps the covariance positive definite under any
+    /// rounding.
     fn correct(&mut self, measured: DVec3) {
         let column = self.covariance.x_axis;
         let gain = column / (column.x + self.belief.measurement);
@@ -89,7 +90,7 @@ impl Channel<DVec3> for PositionKalman {
     }
 }
 
-/// Returns the symmetric part of a covariance, which removes the asymmetry caused by rounding.
+/// Returns the symmetric part of a covariance matrix. Only rounding makes the matrix asymmetric.
 pub(super) fn symmetric(m: DMat3) -> DMat3 {
     (m + m.transpose()) * 0.5
 }
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn after_an_hour_the_error_is_still_that_of_the_covariance() {
-        // The head is still. Errors over the last minute have at most the deviation that the filter claims, because the
+        // The head is still. Errors over the last minute stay within the deviation that the filter claims, because the
         // filter expects jerks that do not occur.
         let mut filter = PositionKalman::new(BELIEF);
         let mut squares = 0.0;

@@ -8,13 +8,14 @@ use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::TrackerReport;
 
-/// A gate in front of two filters, one for position and one for orientation, each with its own time stamps.
+/// A predictor of two filters, one for position and one for orientation, behind a check that rejects impossible
+/// reports.
 #[derive(Clone, Debug)]
 pub(super) struct GatedFilterPair<P, O> {
     gate: Gate,
     position: P,
     orientation: O,
-    /// Time stamps of the newest position and orientation, or `None` before the first report.
+    /// Time stamps (ps) of the newest position and orientation, or `None` before the first report.
     newest_ps: Option<(u64, u64)>,
     horizon_s: f64,
 }
@@ -24,8 +25,8 @@ impl<P, O> GatedFilterPair<P, O> {
         Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
 
-    /// Returns the seconds to extrapolate. Beyond the horizon the result is 0, because the last pose is the best
-    /// estimate then.
+    /// Returns the time for which a filter extrapolates, in seconds. Beyond the longest prediction the result is 0: the
+    /// last pose is then the best estimate.
     fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
         let dt_s = span_s(newest_ps, at_ps);
         if dt_s.abs() <= self.horizon_s { dt_s } else { 0.0 }

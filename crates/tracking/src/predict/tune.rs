@@ -9,45 +9,47 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Seconds of motion for tuning a filter, and the length of its beginning that is not evaluated. Lively spells are
-/// rare: with 20 seconds, a filter tuned for 200 ms was worse at 200 ms on another motion than a filter tuned for 50
-/// ms.
+/// Length of the motion on which a filter is tuned, seconds, and length of its start that is not evaluated. Lively
+/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
+/// motion worse than a filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports for tuning: all reports of a 120 Hz tracker in the training time. A faster tracker gets
-/// less time.
+/// Greatest number of reports on which a filter is tuned: those of a 120 Hz tracker in `TRAINING_S`. A faster tracker
+/// reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
-/// Seed of the noise in training. If the evaluated run uses this seed, training uses the next seed.
+/// Seed of the tracker's noise when a filter is tuned. If the evaluated run has this seed, the tuning uses the next
+/// seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in the search for the white jerk, and the number of values in each round. A step of
-/// the last round is 0.2 decades or less. This is 8 % of the filter's time constant, which varies with the sixth root
-/// of the jerk.
+/// Range of the decimal logarithm in the search for the best white jerk, and number of values per round. A step of the
+/// last round is 0.2 decades or less. This step changes the filter's time constant by 8 %, because the time constant
+/// varies with the sixth root of the jerk.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
 const JERKS_A_ROUND: usize = 13;
 const ROUNDS: usize = 2;
 
-/// Greatest distance in reports between the points of a difference.
+/// Greatest number of reports between the two poses whose difference gives a velocity.
 const LONGEST_BASELINE: u32 = 16;
 
-/// The conditions under which a filter was tuned, and the remaining errors.
+/// The conditions under which a prediction filter was tuned, and the errors that remained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// Prediction interval, ps, from the instant at which a report was true.
+    /// Time from the instant at which a report was true to the predicted instant, ps.
     pub interval_ps: u64,
-    /// True if another motion of the same kind was used, false if the motion itself was used.
+    /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
+    /// motion.
     pub sibling: bool,
-    /// Length of the training motion, seconds. At most the first second is not evaluated.
+    /// Length of the motion on which the filter was tuned, seconds. Up to its first second is not evaluated.
     pub seconds: f64,
-    /// Number of reports whose predictions were evaluated.
+    /// Number of reports from which a prediction was evaluated.
     pub reports: u64,
-    /// Seed of the tracker's noise, which always differs from the seed of the evaluated run.
+    /// Seed of the tracker's noise during the tuning. This seed always differs from that of the evaluated run.
     pub seed: u64,
-    /// Remaining mean distance between prediction and truth, m.
+    /// Mean distance between predicted and true position after the tuning, m.
     pub mean_m: f64,
-    /// Remaining mean angle between prediction and truth, degrees.
+    /// Mean angle between predicted and true orientation after the tuning, degrees.
     pub mean_deg: f64,
 }
 
@@ -60,21 +62,23 @@ pub struct Tuned {
     pub training: Option<Training>,
 }
 
-/// Returns the seed of the training noise for a run whose noise has the seed `judged`. The two seeds always differ.
+/// Returns a seed for the tracker's noise during the tuning. It always differs from `judged`, the seed of the noise in
+/// the evaluated run.
 pub fn training_seed(judged: u64) -> u64 {
     if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
 
-/// Finds the settings with the least mean error for predictions `interval_ps` after a tracker's reports of a motion.
+/// Finds the predictor settings with the least mean error on a motion. Predictions are for `interval_ps` after the
+/// instant at which a report was true.
 ///
 /// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a difference it covers the baseline, 1 to 16 reports. Position and orientation have separate values. The noise of
-/// reports is the tracker's own. The initial speeds and accelerations of a Kalman filter are the root mean squares of
-/// the motion.
+/// a prediction by differences, the search covers the baseline: 1 to 16 reports from one pose to the other. Position
+/// and orientation have separate values. The assumed noise of reports is the tracker's own. The assumed speeds and
+/// accelerations before the first report are the root mean squares of the motion.
 ///
-/// Training uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
-/// tracker has no bias, metal or faults, and its noise has another seed than `evaluated_seed`. The same (motion, tracker,
-/// interval) gives the same result on every host.
+/// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
+/// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
+/// tracker, interval) gives the same result on every host.
 ///
 /// # Errors
 ///
@@ -110,21 +114,22 @@ pub fn tune<M: Motion + ?Sized>(
     Ok(Tuned { config, training: Some(training) })
 }
 
-/// The training data: reports, and the true pose to predict from each report.
+/// The data on which a filter is tuned: reports, and for each report the true pose that should be predicted.
 struct TrainingData {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
-    /// Number of reports at the start whose predictions are not evaluated.
+    /// Number of reports at the start that the filter receives but whose predictions are not evaluated.
     settled: usize,
     seconds: f64,
-    /// Prediction interval, ps, after the instant of a report.
+    /// Time from the instant of a report to the predicted instant, ps.
     interval_ps: u64,
-    /// Root mean squares for each axis: speed, acceleration, angular velocity, angular acceleration.
+    /// Root mean squares of speed, acceleration, angular velocity and angular acceleration along each axis.
     rates: [f64; 4],
 }
 
 impl TrainingData {
-    /// Collects the training data of a motion behind a tracker, or returns `None` if no report can be evaluated.
+    /// Collects reports of a tracker on a motion, with the true poses to predict. Returns `None` if no report can be
+    /// evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
         // A head that stands still at its end teaches the filter nothing.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
@@ -140,7 +145,8 @@ impl TrainingData {
         Some(Self { truths, settled, seconds, interval_ps, rates, reports })
     }
 
-    /// Returns the settings with initial deviations that match the motion.
+    /// Returns the settings with the motion's root mean squares as the assumed speeds and accelerations before the
+    /// first report.
     fn with_start(&self, base: PredictorConfig) -> PredictorConfig {
         let [speed, acceleration, turn, turn_acceleration] = self.rates;
         let start = Start {
@@ -168,13 +174,12 @@ impl TrainingData {
         Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
     }
 
-    /// Returns the settings with the best white jerks, and their errors in metres and degrees.
+    /// Returns the settings with the best white jerks, and their mean errors in metres and degrees.
     fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
         for _ in 0..ROUNDS {
-            // Both channels try one value each in the same run, because position and orientation are filtered
-            // separately.
+            // One run tries one value for position and one for orientation, because the two are filtered separately.
             let steps = spans.map(|(low, high)| (high - low) / (JERKS_A_ROUND - 1) as f64);
             for i in 0..JERKS_A_ROUND {
                 let tried: [f64; 2] = core::array::from_fn(|channel| spans[channel].0 + steps[channel] * i as f64);
@@ -191,7 +196,8 @@ impl TrainingData {
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
-    /// Returns the settings with the best baselines, and their errors in metres and degrees.
+    /// Returns the settings with the best numbers of reports between the poses of a difference, and their mean errors
+    /// in metres and degrees.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
@@ -203,7 +209,8 @@ impl TrainingData {
     }
 }
 
-/// Keeps, for each channel, the first value with the least error.
+/// Stores a tried value as the best if its error is smaller, separately for position and orientation. Of equal errors
+/// the first value stays.
 fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     for (best, found) in best.iter_mut().zip(errors.into_iter().zip(tried)) {
         if found.0 < best.0 {
@@ -212,19 +219,19 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk for a decimal logarithm. The jerks of both filters have the same limits.
+/// Returns the white jerk with this decimal logarithm, within the limits that both filters share.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }
 
-/// Clamps a number to the limits of the filter's parameter table.
+/// Clamps a number to the range that the filter's parameter table allows.
 fn within(name: &str, value: f64) -> f64 {
     let limits = Filter::INFOS.iter().find(|info| info.name == name).map(|info| info.limits);
     limits.map_or(value, |(low, high)| value.clamp(low.real(), high.real()))
 }
 
-/// Returns root mean squares at the reports, for one of three axes: speed, acceleration, angular velocity, angular
-/// acceleration.
+/// Returns the root mean squares along each axis of speed, acceleration, angular velocity and angular acceleration,
+/// computed at the reports.
 fn rates<M: Motion + ?Sized>(motion: &M, reports: &[TrackerReport]) -> [f64; 4] {
     let at =
         |report: &TrackerReport| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));

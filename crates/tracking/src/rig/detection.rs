@@ -1,20 +1,21 @@
 use crate::tracker::TrackerReport;
 
-/// The method by which the host detects the pendulum's low point in the reported positions. The paper does not state
-/// its method.
+/// The method by which the host detects that the pendulum passes its low point, from the reported positions. The paper
+/// does not state its method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
-    /// The bob has crossed the vertical. The first report after the low point shows this, 0 to 1 report interval late.
-    /// Noise of a millimetre hardly matters, because the bob is fastest there.
+    /// The host detects that the pendulum has crossed the vertical. The first report after the low point shows this, up
+    /// to one report interval late. Noise of a millimetre has little effect, because the pendulum is fastest at its low
+    /// point.
     Crossing,
-    /// The vertical velocity, a difference of two reports, has turned from down to up, half to one and a half report
-    /// intervals late. The arc is flat there, so even 0.1 mm of noise gives wrong low points. This method suits
-    /// trackers without noise.
+    /// The host detects that the vertical velocity has turned from down to up. The velocity is a difference of two
+    /// reports, so the detection is half to one and a half report intervals late. The arc is flat at the low point, so
+    /// even 0.1 mm of noise gives wrong low points. This method suits trackers without noise.
     VelocitySign,
 }
 
 impl Detection {
-    /// Returns the greatest delay of the detection, in halves of a report interval.
+    /// Returns the greatest delay from the low point to its detection, in halves of a report interval.
     pub(super) fn greatest_delay_half_intervals(self) -> u64 {
         match self {
             Self::Crossing => 2,
@@ -27,14 +28,14 @@ impl Detection {
     }
 }
 
-/// A detector of low points in a sequence of reports. After each low point it ignores further ones for a quarter of a
-/// swing.
+/// A detector of the pendulum's low points in a sequence of reports. After each low point it ignores further low points
+/// for a quarter of a swing.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
     dead_ps: u64,
     dead_until_ps: u64,
-    /// Sign (true is positive) and height of the last report.
+    /// Sign and height of the position in the last report. `true` stands for a positive sign.
     last: Option<(bool, f64)>,
 }
 
@@ -43,7 +44,7 @@ impl Detector {
         if !report.pose.is_finite() {
             return false;
         }
-        // A crossing changes the sign of x. The velocity method compares the height with the last report's.
+        // A crossing changes the sign of x. The velocity method compares the height with that of the last report.
         let x = report.pose.position.x;
         let height = report.pose.position.y;
         let positive = match self.how {

@@ -2,7 +2,7 @@ use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 
-/// The report by which the host detects a low point.
+/// The report by which the host detects that the pendulum has passed its low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowPointReport {
     /// Time stamp of the report, ps: the instant at which its position was true.
@@ -11,40 +11,40 @@ pub struct LowPointReport {
     pub arrives_ps: u64,
 }
 
-/// One pass of the bob, measured by the system's own time stamps.
+/// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Report by which the host detected the low point.
+    /// Report by which the host detected the pendulum's low point.
     pub sighting: LowPointReport,
-    /// Start of the frame that the low point requested, ps.
+    /// Instant at which the host started a frame because of the low point, ps.
     pub started_ps: u64,
-    /// Instant at which the frame is shown according to the pipeline, ps.
+    /// Instant at which the pipeline counts this frame as shown, ps.
     pub shown_ps: u64,
 }
 
-/// One pass of the bob, measured on the oscilloscope without any time stamp of the system.
+/// One pass of the pendulum through its low point, measured on the oscilloscope without any time stamp of the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// Instant of the low point, ps.
+    /// Instant at which the photodiode sees the pendulum at its low point, ps.
     pub low_point_ps: u64,
-    /// Instant of the step on the D/A line, ps.
+    /// Instant at which the host switches the D/A line because it has detected the low point, ps.
     pub dac_ps: u64,
-    /// Instant at which the photodiode on the screen steps to the level of the D/A line, ps.
+    /// Instant at which the photodiode on the screen sees the frame that the low point requested, ps.
     pub light_ps: u64,
 }
 
-/// Statistics of a latency over all passes, in seconds.
+/// Statistics of a latency over all passes of the pendulum, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Number of passes of the bob.
+    /// Number of passes of the pendulum through its low point.
     pub n: usize,
-    /// Mean latency over the passes, seconds.
+    /// Mean latency over all passes of the pendulum, seconds.
     pub mean_s: f64,
-    /// Sample standard deviation (division by n - 1), seconds, or NaN for a single pass.
+    /// Sample standard deviation of the latency (division by n - 1), seconds. The value is NaN for a single pass.
     pub deviation_s: f64,
-    /// Latency of the fastest pass, seconds.
+    /// Least latency of all passes, seconds.
     pub least_s: f64,
-    /// Latency of the slowest pass, seconds.
+    /// Greatest latency of all passes, seconds.
     pub greatest_s: f64,
 }
 
@@ -65,16 +65,17 @@ impl Latency {
     }
 }
 
-/// The latencies of all passes, measured either from outside or from inside.
+/// Tracking, rendering and total latency over all passes, measured with the oscilloscope ("outside") or by time stamps
+/// ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Latency from the head to the start of the frame. Outside it begins at the low point, inside at the report's time
-    /// stamp.
+    /// Latency from the pendulum's motion to the start of a frame. Measured outside, it begins at the low point.
+    /// Measured inside, it begins at the report's time stamp.
     pub tracking: Latency,
-    /// Latency from the start of the frame to the screen. Outside it ends with light on the photodiode, inside when the
-    /// frame is shown.
+    /// Latency from the start of a frame to its display. Measured outside, it ends when the photodiode sees the frame.
+    /// Measured inside, it ends when the pipeline counts the frame as shown.
     pub rendering: Latency,
-    /// Sum of tracking and rendering latency, from head to light.
+    /// Sum of tracking and rendering latency of each pass, from the motion to the display.
     pub total: Latency,
 }
 
@@ -96,33 +97,35 @@ impl Side {
     }
 }
 
-/// Bound of the rounding error of a mean, seconds: one picosecond, the unit of all instants.
+/// Greatest rounding error of a mean latency, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Both measurements of the same passes, and the bounds of their difference.
+/// Latencies of the same passes measured outside and inside, with limits of their difference. "Outside" means by
+/// oscilloscope, "inside" by time stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
-    /// Measurements from outside, in the order of the passes.
+    /// Measurements with the oscilloscope, one for each pass of the pendulum in order.
     pub outside_passes: Vec<OutsidePass>,
-    /// Measurements from inside, in the order of the passes.
+    /// Measurements by time stamps, one for each pass of the pendulum in order.
     pub inside_passes: Vec<InsidePass>,
     /// Latencies measured with the oscilloscope and the photodiodes.
     pub outside: Side,
     /// Latencies measured by the time stamps of host and boards.
     pub inside: Side,
-    /// Bound of the excess of outside tracking over inside tracking: the detection's delay, one report interval for a
-    /// crossing.
+    /// Greatest amount by which the tracking latency on the oscilloscope may exceed that by time stamps, ps. It is the
+    /// detection's delay: one report interval for detection by crossing the vertical.
     pub tracking_bound_ps: u64,
-    /// Bound of the excess of outside rendering over inside rendering: the photodiode's delay in the scan.
+    /// Greatest amount by which the rendering latency on the oscilloscope may exceed that by time stamps, ps. It is the
+    /// time from the retrace until the beam passes the photodiode.
     pub rendering_bound_ps: u64,
-    /// Bound by which outside rendering can be shorter than inside rendering. The bound is 0 unless the pipeline counts
-    /// a frame as shown during the scan, at a line below the photodiode.
+    /// Greatest amount by which the rendering latency on the oscilloscope may be shorter than that by time stamps, ps.
+    /// The amount is 0 unless the pipeline counts a frame as shown at a scanline below the photodiode.
     pub rendering_early_ps: u64,
 }
 
 impl Measurement {
-    /// Combines the passes of both measurements. `place_ps` is the photodiode's delay in the scan, counted from the
-    /// retrace.
+    /// Combines the measurements by oscilloscope and by time stamps. `place_ps` is the time from the retrace until the
+    /// beam passes the photodiode.
     pub(super) fn new(
         detection: Detection,
         tracker: &TrackerModel,
@@ -141,31 +144,32 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam
-    /// passes a photodiode above this line earlier, so outside rendering can be shorter than inside rendering.
+    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam can
+    /// pass the photodiode before this. The rendering latency on the oscilloscope can then be shorter than that by time
+    /// stamps.
     #[must_use]
     pub fn with_frames_counted_in_scan(mut self, counted_ps: u64) -> Self {
         self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
         self
     }
 
-    /// Returns the bound of the difference between the total latencies. For detection by crossing it is one report
-    /// interval plus the photodiode's delay in the scan.
+    /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing it is
+    /// one report interval, plus the time from the retrace until the beam passes the photodiode.
     #[must_use]
     pub fn bound_ps(&self) -> u64 {
         self.tracking_bound_ps + self.rendering_bound_ps
     }
 
-    /// Returns the mean total latency from outside minus the mean total latency from inside, seconds.
+    /// Returns the mean total latency on the oscilloscope minus the mean total latency by time stamps, seconds.
     #[must_use]
     pub fn outside_less_inside_s(&self) -> f64 {
         self.outside.total.mean_s - self.inside.total.mean_s
     }
 
-    /// Returns true if both measurements agree on average over the passes. Outside tracking may exceed inside tracking
-    /// by at most one report interval (for a crossing). Outside rendering may exceed inside rendering by at most the
-    /// photodiode's delay in the scan. Outside rendering may be shorter only if the pipeline counts frames during the
-    /// scan.
+    /// Returns true if both measurements agree on average over the passes. The tracking latency on the oscilloscope
+    /// ("outside") may exceed that by time stamps ("inside") by at most one report interval, for detection by crossing.
+    /// The outside rendering latency may exceed the inside one by at most the time from the retrace until the beam
+    /// passes the photodiode. It may be shorter only if the pipeline counts frames as shown during the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
@@ -178,20 +182,21 @@ impl Measurement {
     }
 }
 
-/// The traces of the oscilloscope's three channels.
+/// The traces of an oscilloscope with three channels: the pendulum's low point, the D/A line and the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Photodiode at the low point: one pulse for each low point, centred on its instant.
+    /// Trace of the photodiode at the low point. It has one pulse for each pass of the pendulum, centred on the instant
+    /// of the low point.
     pub low_point: ScopeTrace,
-    /// D/A line: one step for each frame that a low point requested.
+    /// Trace of the D/A line, with one step for each frame that a low point requested.
     pub dac: ScopeTrace,
-    /// Photodiode on the screen: dark and light frames.
+    /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope with a pulse for every low point up to the last step of the D/A line. The width of a
-    /// pulse is the time that the bob takes to cross the LED's beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the D/A line.
+    /// A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -200,8 +205,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Reads the passes off the traces. Each step of the D/A line gives one pass with its low point and the next step
-    /// of the screen to the same level. Returns `None` if the screen lacks one of these steps.
+    /// Reads the passes of the pendulum off the traces. Each step of the D/A line gives one pass. The low point lies
+    /// before the step, and the screen steps to the same level after it. Returns `None` if the screen lacks one of
+    /// these steps.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

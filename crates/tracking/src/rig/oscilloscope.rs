@@ -1,13 +1,13 @@
-/// A step of a channel from low to high or from high to low.
+/// A step of an oscilloscope channel from low to high or from high to low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScopeEdge {
     /// Instant of the step, ps of simulated time.
     pub t_ps: u64,
-    /// Level after the step: true is high.
+    /// Level of the channel after the step: true is high.
     pub high: bool,
 }
 
-/// One channel of the oscilloscope. The level is low before the first edge.
+/// The trace of one oscilloscope channel. The level is low before the first step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScopeTrace {
     /// Name of the signal on this channel.
@@ -16,8 +16,8 @@ pub struct ScopeTrace {
 }
 
 impl ScopeTrace {
-    /// Creates a channel from samples in order of time. Each sample gives an instant and the level from this instant
-    /// on.
+    /// Creates a trace from pairs of an instant (ps) and a level, in order of time. Each level lasts until the next
+    /// instant.
     #[must_use]
     pub fn sampled(name: &'static str, samples: impl IntoIterator<Item = (u64, bool)>) -> Self {
         let mut edges: Vec<ScopeEdge> = Vec::new();
@@ -29,7 +29,7 @@ impl ScopeTrace {
         Self { name, edges }
     }
 
-    /// Creates a channel that changes its level at each of these instants.
+    /// Creates a trace that changes its level at each of these instants (ps).
     #[must_use]
     pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
@@ -37,25 +37,25 @@ impl ScopeTrace {
         Self { name, edges: edges.collect() }
     }
 
-    /// Creates a channel with a pulse of this width about each of these instants.
+    /// Creates a trace with a pulse of this width (ps) centred on each of these instants.
     pub(super) fn pulsing(name: &'static str, instants: impl Iterator<Item = u64>, width_ps: u64) -> Self {
         let ends = instants.flat_map(|t| [t.saturating_sub(width_ps / 2), t.saturating_add(width_ps / 2)]);
         Self::toggling(name, ends.collect())
     }
 
-    /// Returns the edges in order of time.
+    /// Returns the steps of the trace in order of time.
     pub fn edges(&self) -> &[ScopeEdge] {
         &self.edges
     }
 
-    /// Returns the level at an instant. At an edge it is the new level.
+    /// Returns the level of the trace at an instant. At a step this is the new level.
     pub fn level(&self, t_ps: u64) -> bool {
         let after = self.edges.partition_point(|edge| edge.t_ps <= t_ps);
         after > 0 && self.edges[after - 1].high
     }
 
-    /// Returns the channel as a time series of levels 0 and 1 at `from`, `from + step`, ... before `to`. A step of 0
-    /// counts as 1.
+    /// Returns the trace as a time series of levels 0 and 1 at `from`, `from + step`, ... before `to`. A step of 0
+    /// counts as 1 ps.
     pub fn samples(&self, from_ps: u64, to_ps: u64, step_ps: u64) -> impl Iterator<Item = (u64, f64)> {
         (from_ps..to_ps)
             .step_by(usize::try_from(step_ps.max(1)).unwrap_or(usize::MAX))

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 use super::{HostLine, MagneticDistortion, SerialLine, TrackerFault};
 use crate::config::{self as table, Tables};
 
-/// Settings of a tracker, its cable and the host's port. The presets take every number from [`crate::config`].
+/// Settings of a tracker, its cable and the host's serial port. The presets take every number from [`crate::config`].
 ///
-/// The tracker begins measurement n, called a solution, at the n-th sync (floor of n x receivers / rate). This
-/// measurement is ready for the cable `sync_to_output_ps` later. A latency counts back from this instant to the instant
-/// at which the pose was true.
+/// The tracker begins measurement n (called a solution) at sync signal n, at the time n x receivers / rate.
+/// `sync_to_output_ps` later the measurement is ready for the cable. The latencies are ages: at this instant, the
+/// measured pose was true `position_latency_ps` or `orientation_latency_ps` ago.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -16,41 +16,46 @@ pub struct TrackerConfig {
     pub name: String,
     /// Measurements per second over all receivers, 1 to 10,000.
     pub rate_hz: u32,
-    /// Number of receivers that share the rate, 1 to 16. The head's receiver is sent first.
+    /// Number of receivers that share the measurement rate, 1 to 16. The record of the head's receiver is sent first.
     pub receivers: u32,
-    /// Time from sync to the first character on the cable, ps.
+    /// Time from the tracker's sync signal to the first character on the cable, ps.
     pub sync_to_output_ps: u64,
-    /// Age of a position when its first character is sent, ps. At most `sync_to_output_ps`.
+    /// Time from the instant at which the position was true to its first character on the cable, ps. At most
+    /// `sync_to_output_ps`.
     pub position_latency_ps: u64,
-    /// Age of an orientation when its first character is sent, ps. At most `sync_to_output_ps`.
+    /// Time from the instant at which the orientation was true to its first character on the cable, ps. At most
+    /// `sync_to_output_ps`.
     pub orientation_latency_ps: u64,
-    /// White position noise of each axis, rms, m.
+    /// Random position error that changes with each report (white noise), rms along each axis, m.
     pub position_noise_m: f64,
-    /// White orientation noise about each axis, rms, degrees.
+    /// Random orientation error that changes with each report (white noise), rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Systematic position error of each axis, rms over installations, m. The error is drawn once from the seed and is
-    /// the same in every report.
+    /// Constant position error, drawn once from the seed and then the same in every report. The value is the rms along
+    /// each axis over all seeds, m.
     pub position_bias_m: f64,
-    /// Systematic orientation error about each axis, rms over installations, degrees. The error is drawn once from the
-    /// seed and is the same in every report.
+    /// Constant orientation error, drawn once from the seed and then the same in every report. The value is the rms
+    /// about each axis over all seeds, degrees.
     pub orientation_bias_deg: f64,
-    /// Gain a of the tracker's filter x' = a x + (1 - a) x', above 0. A gain of 1 turns the filter off.
+    /// Gain a of the tracker's low-pass filter, above 0. The filter replaces its output x' by a x + (1 - a) x' at each
+    /// measurement x. A gain of 1 turns the filter off.
     pub filter_gain: f64,
-    /// The serial cable, or `None` if the latencies include the cable.
+    /// The serial cable from tracker to host, or `None` if the latencies already include the time on the cable.
     pub serial: Option<SerialLine>,
     /// Method by which the host's kernel reads the serial port.
     pub host: HostLine,
-    /// Time from the first report to the crash of a host that interrupts for each character, or `None` if the host
-    /// never crashes. TR94 reports this crash for the Flock of Birds.
+    /// Time from the first report to the crash of a host with a patched kernel, which interrupts for each character.
+    /// `None` if such a host never crashes. TR94 reports the crash for the Flock of Birds.
     pub crashes_patched_host_after_ps: Option<u64>,
     /// Distortion by metal near a magnetic tracker, or `None` without distortion.
     pub distortion: Option<MagneticDistortion>,
-    /// Injected faults in order of precedence. The list is empty for a healthy tracker.
+    /// Injected faults. If two random faults hit one report, the first in this list applies. The list is empty for a
+    /// healthy tracker.
     pub faults: Vec<TrackerFault>,
 }
 
 impl TrackerConfig {
-    /// Returns the Polhemus Fastrak: one receiver, filter off, 115,200 baud, patched kernel.
+    /// Returns the Polhemus Fastrak with one receiver, its filter off and 115,200 baud. The host's kernel is patched to
+    /// interrupt for each character.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
@@ -71,8 +76,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the Ascension Flock of Birds with its filters off, on an unpatched kernel. A patched kernel crashes with
-    /// this tracker.
+    /// Returns the Ascension Flock of Birds with its filters off, on a host with an unpatched kernel. A patched kernel
+    /// crashes with this tracker.
     pub fn flock_of_birds() -> Self {
         Self::flock_of_birds_by(&Tables::PAPERS)
     }
@@ -93,13 +98,13 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the Flock of Birds on a patched host, which crashes one second after the first report. This preset is
-    /// for fault injection.
+    /// Returns the Flock of Birds on a host with a patched kernel, which crashes one second after the first report.
+    /// This preset is for fault injection.
     pub fn flock_of_birds_on_patched_host() -> Self {
         Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
     }
 
-    /// Returns the Flock of Birds on a patched host with the numbers of these tables.
+    /// Returns the Flock of Birds on a host with a patched kernel, which crashes. The numbers come from these tables.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
         Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
@@ -118,7 +123,8 @@ impl TrackerConfig {
             .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
-    /// Returns the Polhemus 3Space above a steel floor, with its transmitter at the origin and an unpatched kernel.
+    /// Returns the Polhemus 3Space above a steel floor, with its transmitter at the origin. The host's kernel is
+    /// unpatched and polls the serial port.
     pub fn polhemus_3space() -> Self {
         Self::polhemus_3space_by(&Tables::PAPERS)
     }
@@ -163,7 +169,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the same tracker with one latency for position and orientation, equal to the time from sync to output.
+    /// Returns the same tracker with this latency for both position and orientation. The time from sync to output
+    /// becomes the same.
     pub fn with_latency_ps(self, latency_ps: u64) -> Self {
         Self {
             sync_to_output_ps: latency_ps,
@@ -184,7 +191,7 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the same tracker without latency: the host has a measurement at the instant of measuring.
+    /// Returns the same tracker without latency: the host receives a measurement at the instant of measuring.
     pub fn without_latency(self) -> Self {
         Self { serial: None, ..self.without_polling().with_latency_ps(0) }
     }
@@ -194,8 +201,8 @@ impl TrackerConfig {
         Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
     }
 
-    /// Returns the same tracker on an unpatched host, whose kernel polls the serial line at the interval `host.poll` of
-    /// these tables.
+    /// Returns the same tracker on a host with an unpatched kernel, which polls the serial line. These tables give the
+    /// polling interval as `host.poll`.
     pub fn with_polling_by(self, tables: &Tables) -> Self {
         Self { host: HostLine::unix_by(tables), ..self }
     }
@@ -212,7 +219,8 @@ impl TrackerConfig {
         Self { position_bias_m: position_mm / 1e3, orientation_bias_deg: orientation_deg, ..self }
     }
 
-    /// Returns the same tracker without the errors that a filter cannot remove: bias, metal and faults.
+    /// Returns the same tracker without bias, metal distortion and faults, which are errors that a filter cannot
+    /// remove.
     pub fn without_systematic_errors(self) -> Self {
         Self { position_bias_m: 0.0, orientation_bias_deg: 0.0, distortion: None, faults: Vec::new(), ..self }
     }

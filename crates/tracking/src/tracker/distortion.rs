@@ -6,27 +6,28 @@ use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::rotation;
 
-/// Distortion by metal near a magnetic tracker: a smooth error that depends only on the position. A plane appears as a
-/// bowl, and even a still head sees objects in wrong places (TR94).
+/// Distortion of measured poses by metal near a magnetic tracker. The error is smooth and depends only on the position.
+/// A plane appears as a bowl, and even a still head sees objects in wrong places (TR94).
 ///
-/// At distance r from the transmitter, positions move towards the metal by depth r^2 / (1 + (r / reach)^2). This
-/// function is a parabola near the transmitter. Orientations tilt with the bowl's surface. The true magnetic field is
-/// not modelled.
+/// At distance r from the transmitter, measured positions move towards the metal by depth r^2 / (1 + (r / reach)^2).
+/// Near the transmitter this is a parabola. Measured orientations tilt with the bowl's surface. The true magnetic field
+/// is not modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MagneticDistortion {
-    /// Position of the transmitter, m. The error is 0 there.
+    /// Position of the transmitter, m. The distortion is 0 at this position.
     pub transmitter_m: DVec3,
-    /// Direction from the transmitter to the metal, with any length except 0.
+    /// Direction from the transmitter to the metal. The vector can have any length except 0.
     pub towards_metal: DVec3,
-    /// Depth of the bowl per square metre, m.
+    /// Position error per squared distance from the transmitter, m per square metre, valid near the transmitter.
     pub depth_per_m2: f64,
-    /// Distance from the transmitter at which the depth is half of the parabola's, m.
+    /// Distance from the transmitter at which the position error is half of its parabola, m.
     pub reach_m: f64,
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at this position: 20 mm at 1 m (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at this position. Positions 1 m away are wrong
+    /// by 20 mm (assumed) without the limit by reach.
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
@@ -47,7 +48,7 @@ impl MagneticDistortion {
         let axis = self.towards_metal.normalize();
         let saturation = 1.0 + from_transmitter.length_squared() / (self.reach_m * self.reach_m);
         let depth = self.depth_per_m2 * from_transmitter.length_squared() / saturation;
-        // The component of the depth's gradient across the axis is the slope of the bowl.
+        // The slope of the bowl is the part of the depth's gradient that is perpendicular to the axis.
         let gradient = from_transmitter * (2.0 * self.depth_per_m2 / (saturation * saturation));
         Pose {
             position: pose.position + axis * depth,
@@ -79,14 +80,15 @@ mod tests {
         METAL.distort(&Pose::at(DVec3::new(x, 0.0, 0.0))).position.y
     }
 
-    /// Returns the second difference of the height over 10 mm, which is negative if the plane is curved downwards.
+    /// Returns the second difference of the measured height over 10 mm. The value is negative if a plane appears curved
+    /// downwards.
     fn second_difference(x: f64) -> f64 {
         height(x + 0.01) - 2.0 * height(x) + height(x - 0.01)
     }
 
     #[test]
     fn a_level_plane_looks_like_a_bowl() {
-        // 20 mm at 1 m, less the saturation 1 + 1/4.
+        // The depth is 20 mm at 1 m, divided by 1 + 1/4 because of the reach.
         assert_eq!(height(0.0), 0.0);
         assert!((height(1.0) + 0.016).abs() < 1e-12);
         assert!((-100..=100).all(|i| second_difference(f64::from(i) / 100.0) < 0.0), "curved towards the metal");

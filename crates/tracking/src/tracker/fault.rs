@@ -2,20 +2,20 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SettingError;
 
-/// Greatest probability of a random fault. A tracker with more faults hardly reports at all.
+/// Greatest allowed probability of a random fault. With a higher probability the tracker would hardly report at all.
 const MOST_LIKELY: f64 = 0.99;
 
-/// A fault to inject. Several faults can be combined. If two random faults apply to one report, the first in the list
-/// wins.
+/// A fault to inject into a tracker. Several faults can be combined. If two random faults hit one report, the first in
+/// the list applies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TrackerFault {
-    /// The tracker fails for good: no report reaches the host at or after this instant.
+    /// The tracker fails permanently: no report reaches the host at or after this instant.
     Silence {
-        /// First instant at which no report arrives, ps.
+        /// Instant of the failure, ps.
         from_ps: u64,
     },
-    /// The tracker makes no measurements in [from, to).
+    /// The tracker makes no measurements from `from_ps` until before `to_ps`.
     Dropout {
         /// First instant without measurements, ps.
         from_ps: u64,

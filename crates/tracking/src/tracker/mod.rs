@@ -1,4 +1,4 @@
-//! Tracker models: the times of measurements, the errors, and the arrival of reports at the host.
+//! Models of trackers: measurement times, measurement errors, and the arrival of reports at the host.
 
 mod config;
 mod distortion;

@@ -2,10 +2,10 @@ use super::{HostLine, TrackerConfig, TrackerFault};
 use crate::error::SettingError;
 use crate::time::{PS_PER_S, tick_ps};
 
-/// Longest latency or poll period in a configuration.
+/// Longest latency or polling interval that settings may have, ps.
 const LONGEST_PS: u64 = 10 * PS_PER_S;
 
-/// A tracker with checked settings.
+/// A tracker whose settings have been checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackerModel {
     config: TrackerConfig,
@@ -44,31 +44,31 @@ impl TrackerModel {
         PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
     }
 
-    /// Returns the time between reports: the period, or the number of whole periods that a transfer of all receivers
-    /// takes.
+    /// Returns the time between two reports, ps. It is the measurement period, multiplied by the number of whole
+    /// periods that a transfer of all receivers' records takes.
     pub fn report_interval_ps(&self) -> u64 {
         let transfer_ps = self.config.serial.map_or(0, |s| s.transfer_ps(self.config.receivers));
         self.period_ps() * transfer_ps.div_ceil(self.period_ps()).max(1)
     }
 
-    /// Returns the delay of the tracker's own filter behind a steady motion: period x (1 - a) / a. Time stamps do not
-    /// include this delay.
+    /// Returns the delay that the tracker's own filter adds for a steady motion, ps: period x (1 - a) / a. Time stamps
+    /// do not include this delay.
     pub fn filter_delay_ps(&self) -> u64 {
         let gain = self.config.filter_gain;
         (self.period_ps() as f64 * (1.0 - gain) / gain) as u64
     }
 
-    /// Returns the time that the head's record takes on the cable.
+    /// Returns the time that the record of the head's receiver takes on the cable, ps.
     pub fn transfer_ps(&self) -> u64 {
         self.config.serial.map_or(0, |serial| serial.transfer_ps(1))
     }
 
-    /// Returns the instant of sync `n`, or `None` beyond the end of simulated time.
+    /// Returns the instant of sync signal `n`, ps, or `None` beyond the end of simulated time.
     pub(super) fn sync_ps(&self, n: u64) -> Option<u64> {
         tick_ps(n, self.config.receivers, self.config.rate_hz)
     }
 
-    /// Returns the number of the first measurement whose sync is at or after `t_ps`.
+    /// Returns the index of the first measurement whose sync signal is at or after `t_ps`.
     pub(super) fn solution_at(&self, t_ps: u64) -> u64 {
         let per_ps = u128::from(t_ps) * u128::from(self.config.rate_hz);
         let n = (per_ps / (u128::from(PS_PER_S) * u128::from(self.config.receivers))) as u64;

@@ -1,18 +1,18 @@
 use crate::pose::Pose;
 
-/// A report as the host receives it: a pose with its times.
+/// A report as the host receives it: a measured pose with its time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerReport {
-    /// Number of the measurement (called a solution). A step of more than one from report to report means that
-    /// measurements were dropped.
+    /// Index of the measurement (called a solution). If it grows by more than 1 between two reports, measurements were
+    /// dropped.
     pub solution: u64,
-    /// Instant at which the orientation was true, ps.
+    /// Instant at which the measured orientation was true, ps.
     pub measured_ps: u64,
-    /// Instant at which the position was true, ps. This instant equals `measured_ps` except for the Flock of Birds,
-    /// whose position is older.
+    /// Instant at which the measured position was true, ps. It differs from `measured_ps` only for the Flock of Birds,
+    /// whose position is older than its orientation.
     pub position_measured_ps: u64,
     /// Instant at which the host receives the report, ps.
     pub arrives_ps: u64,
-    /// Measured pose, including the tracker's errors.
+    /// Measured pose, which includes the tracker's errors.
     pub pose: Pose,
 }

@@ -9,7 +9,7 @@ use crate::rotation;
 
 impl TrackerModel {
     /// Returns the reports that the host receives while the head follows `motion`, in order of arrival. The sequence
-    /// ends when the tracker fails for good. The same (model, motion, seed) gives the same sequence on every host.
+    /// ends when the tracker fails permanently. The same (model, motion, seed) gives the same sequence on every host.
     pub fn reports<M: Motion>(&self, motion: M, seed: u64) -> Reports<M> {
         Reports::new(self.clone(), motion, seed)
     }
@@ -21,7 +21,7 @@ pub struct Reports<M> {
     model: TrackerModel,
     motion: M,
     noise: u64,
-    /// Systematic error: an offset in metres, and a rotation vector in radians.
+    /// Constant error of the tracker: an offset in metres, and a rotation vector in radians.
     bias: (DVec3, DVec3),
     faults: u64,
     poll_phase_ps: u64,
@@ -35,7 +35,7 @@ pub struct Reports<M> {
 impl<M: Motion> Reports<M> {
     fn new(model: TrackerModel, motion: M, seed: u64) -> Self {
         let config = model.config();
-        // The seed picks the phase of the host's polling.
+        // The seed determines the phase of the host's polling.
         let poll_phase_ps = match config.host {
             HostLine::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
             HostLine::InterruptPerCharacter => 0,
@@ -59,18 +59,19 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Skips all measurements whose sync is before an instant. The tracker's own filter starts at this instant.
+    /// Skips all measurements whose sync signal is before the instant `from_ps`. The tracker's own filter starts at
+    /// this instant.
     pub fn from(self, from_ps: u64) -> Self {
         Self { next_solution: self.model.solution_at(from_ps), ..self }
     }
 
-    /// Computes a measurement of the tracker with noise, distortion and filter, and the times at which its parts were
-    /// true.
+    /// Computes a measurement with distortion, noise and filter. The result includes the instants at which its position
+    /// and orientation were true.
     fn solve(&mut self, solution: u64, output_ps: u64) -> TrackerReport {
         let config = self.model.config();
         let position_measured_ps = output_ps - config.position_latency_ps;
         let measured_ps = output_ps - config.orientation_latency_ps;
-        // Position and orientation may have different ages.
+        // Latency can differ between position and orientation.
         let mut pose = self.motion.pose(measured_ps);
         if position_measured_ps != measured_ps {
             pose.position = self.motion.pose(position_measured_ps).position;
@@ -115,7 +116,8 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if a fault loses the measurement. A dropout interval is skipped in one step.
+    /// Returns true if a fault loses this measurement. All measurements within a dropout interval are skipped in one
+    /// step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -135,7 +137,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// Applies the faults that damage a report on the cable.
+    /// Applies the faults that damage this report.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -158,8 +160,8 @@ impl<M: Motion> Reports<M> {
         }
     }
 
-    /// Sends a ready measurement if the cable is free. Returns the instant at which the host receives it, or `None` if
-    /// the cable is busy.
+    /// Sends a finished measurement at `ready_ps` if the cable is free. Returns the instant at which the host receives
+    /// it, or `None` if the cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;
@@ -172,7 +174,7 @@ impl<M: Motion> Reports<M> {
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// Schedules the crash of a patched host, which the first arrival starts.
+    /// Schedules the crash of a host with a patched kernel. The delay counts from the arrival of the first report.
     fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
@@ -181,7 +183,7 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Draws the systematic error of an installation.
+/// Draws the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();
@@ -194,7 +196,7 @@ impl<M: Motion> Iterator for Reports<M> {
     fn next(&mut self) -> Option<TrackerReport> {
         loop {
             let solution = self.next_solution;
-            // Stop beyond the end of simulated time, or when the tracker has failed for good.
+            // Stop beyond the end of simulated time, or when the tracker has failed permanently.
             let sync_ps = self.model.sync_ps(solution)?;
             let output_ps = sync_ps.checked_add(self.model.config().sync_to_output_ps)?;
             if output_ps >= self.silent_from_ps {
@@ -219,7 +221,7 @@ impl<M: Motion> Iterator for Reports<M> {
     }
 }
 
-/// Returns a random unit vector from draws `first` and `first + 1`.
+/// Returns a random unit vector, computed from the random numbers `first` and `first + 1` of the seed.
 fn random_direction(seed: u64, first: u64) -> DVec3 {
     let (x, y) = normal_pair(seed, first);
     let (z, _) = normal_pair(seed, first + 1);

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::{self as table, Tables};
 use crate::time::PS_PER_S;
 
-/// The serial cable from tracker to host, which carries one record at a time.
+/// The serial cable from tracker to host. It carries one record at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SerialLine {
@@ -21,12 +21,12 @@ fn default_byte_bits() -> u32 {
 }
 
 impl SerialLine {
-    /// Returns the line of the Fastrak: a record of 47 bytes at 115,200 baud takes 4.08 ms.
+    /// Returns the serial line of the Fastrak. A record of 47 bytes at 115,200 baud takes 4.08 ms.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// Returns the line of the Fastrak with the numbers of these tables.
+    /// Returns the serial line of the Fastrak with the numbers of these tables.
     pub fn fastrak_by(tables: &Tables) -> Self {
         Self {
             record_bytes: tables.fastrak.record as u32,
@@ -35,7 +35,7 @@ impl SerialLine {
         }
     }
 
-    /// Returns the time of `records` records on the line: bytes x bits of a byte / baud.
+    /// Returns the time that `records` records take on the line, ps: bytes x bits per byte / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
         let bits = u128::from(self.record_bytes) * u128::from(self.byte_bits) * u128::from(records);
         let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
@@ -47,29 +47,29 @@ impl SerialLine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum HostLine {
-    /// The kernel polls the port periodically, with a phase that the seed picks. A record waits 0 to one period,
-    /// uniformly over seeds.
+    /// The kernel polls the port periodically, and the seed determines the phase. A record waits between zero and one
+    /// period, with uniform probability over seeds.
     Polled {
         /// Time between two polls, ps, above 0.
         period_ps: u64,
     },
-    /// The patched kernel, which interrupts for each character. A record does not wait.
+    /// The patched kernel, which interrupts for each character. A record arrives without waiting.
     InterruptPerCharacter,
 }
 
 impl HostLine {
-    /// Returns the unpatched kernel, which polls the port every 30 ms (TR94).
+    /// Returns the unpatched kernel, which polls the serial port every 30 ms (TR94).
     pub fn unix() -> Self {
         Self::unix_by(&Tables::PAPERS)
     }
 
-    /// Returns the unpatched kernel with the numbers of these tables.
+    /// Returns the unpatched kernel with the polling interval of these tables.
     pub fn unix_by(tables: &Tables) -> Self {
         Self::Polled { period_ps: table::ms_to_ps(tables.host.poll) }
     }
 
-    /// Returns the instant at which the kernel reads a record that is complete at `t_ps`. `phase_ps` is the instant of
-    /// the first poll.
+    /// Returns the instant (ps) at which the kernel reads a record whose last character arrives at `t_ps`. `phase_ps`
+    /// is the instant of the first poll.
     pub fn seen_ps(&self, t_ps: u64, phase_ps: u64) -> u64 {
         match *self {
             Self::InterruptPerCharacter => t_ps,

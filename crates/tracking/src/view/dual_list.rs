@@ -1,18 +1,19 @@
-//! The dual display list of just-in-time pixels. Every vertex is transformed for the start T0 and for the end T1 of a
-//! field. In between, P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The papers give two meanings of P:
-//! positions on the screen, and positions in the view before the perspective divide.
+//! The dual display list of just-in-time pixels. Every vertex is transformed for two instants: the start T0 and the end
+//! T1 of a field. In between, P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The papers define P in two ways:
+//! as the position on the screen, or as the position in the view before the perspective divide.
 
 use glam::{DVec2, DVec3};
 
 use super::HmdView;
 
-/// Interpolates positions on the screen. `start` and `end` are the vertex in head axes (m) at T0 and T1. Returns `None`
-/// if either is behind the eye.
+/// Interpolates a vertex between its positions on the screen at the times T0 and T1. `start` and `end` are the vertex
+/// in head axes (m) at these times. Returns `None` if either is behind the eye.
 pub fn screen_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     Some(view.project(start)?.lerp(view.project(end)?, s))
 }
 
-/// Interpolates positions in the view, then projects the result. Returns `None` if the result is behind the eye.
+/// Interpolates a vertex between its positions in head axes at the times T0 and T1, then projects the result. Returns
+/// `None` if the result is behind the eye.
 pub fn view_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     view.project(start.lerp(end, s))
 }
@@ -26,8 +27,8 @@ mod tests {
 
     type Interpolate = fn(&HmdView, DVec3, DVec3, f64) -> Option<DVec2>;
 
-    /// Returns the greatest error (px) of an interpolation over `span_ps` of a 200 deg/s pan. Points farther than
-    /// `half_width` px from the middle of a 600 px, 60 degree view are ignored.
+    /// Returns the greatest interpolation error (px) during `span_ps` of a head turn at 200 deg/s. Only points within
+    /// `half_width` px of the middle are evaluated, in a view of 600 px and 60 degrees.
     fn worst(interpolate: Interpolate, span_ps: u64, half_width: f64) -> f64 {
         let steps = (0..=40).flat_map(|step| (-340..=340).map(move |tenth_deg| (step, tenth_deg)));
         steps
@@ -43,7 +44,7 @@ mod tests {
         ((truth.x - 300.0).abs() <= half_width).then(|| guess.distance(truth))
     }
 
-    /// Returns the point in the axes of a head that pans at 200 deg/s, m.
+    /// Returns a point in the axes of a head that turns at 200 deg/s, m.
     fn seen_in_pan(point: DVec3, t_ps: u64) -> DVec3 {
         Pan::at(200.0).pose(t_ps).view_of(point)
     }

@@ -1,16 +1,16 @@
 use crate::error::SettingError;
 use crate::random::{bits, stream};
 
-/// Rounds of the Feistel network. Four rounds with a good mixing function give a good permutation (Luby and Rackoff
-/// 1988).
+/// Number of rounds of the Feistel network. Four rounds with a good mixing function give a good permutation (Luby and
+/// Rackoff 1988).
 const ROUNDS: u64 = 4;
 
-/// The pixel order of frameless rendering (Bishop et al. 1994): every pixel once per pass, in a random order.
+/// The pixel order of frameless rendering (Bishop et al. 1994). Each pass updates every pixel once, in a random order.
 ///
-/// The order is a permutation of 0..n from a seed, computed for any step in constant memory. A Feistel network permutes
-/// the next power of two and is iterated until the result is below n, on average at most two iterations. Every pass
-/// uses the same order. A pixel's age therefore never exceeds one pass, and its mean is half a pass. A new order for
-/// each pass would raise the mean to 7/12 of a pass.
+/// The order is a permutation of 0..n from a seed. Computing any element takes constant memory. A Feistel network
+/// permutes the numbers up to the next power of two. It is repeated until the result is below n, on average at most
+/// twice. Every pass uses the same order. The age of a pixel therefore never exceeds one pass, and its mean is half a
+/// pass. A new order for each pass would raise the mean age to 7/12 of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RandomOrder {
     n_pixels: u32,
@@ -36,7 +36,7 @@ impl RandomOrder {
         self.n_pixels
     }
 
-    /// Returns the pixel, 0..n, that is updated at `step`. Steps n, 2n, ... begin new passes.
+    /// Returns the index of the pixel, 0..n, that is updated at step `step`. A new pass begins at steps n, 2n, ...
     pub fn pixel(&self, step: u64) -> u32 {
         let mut place = (step % u64::from(self.n_pixels)) as u32;
         loop {
@@ -47,7 +47,8 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes 0..2^width. The two parts of the word swap roles each round, so odd widths are allowed.
+    /// Permutes the numbers 0..2^width by a Feistel network. The two parts of the number swap roles each round, so that
+    /// `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
         let mut high_bits = self.half_bits + self.odd_bit;

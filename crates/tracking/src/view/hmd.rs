@@ -6,7 +6,7 @@ use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Least distance before the eye, m, at which a point can be projected.
+/// Least distance of a point in front of the eye, m. A nearer point cannot be projected.
 const NEAREST_M: f64 = 1e-6;
 
 /// The flat picture of a head-mounted display, seen from one eye. Pixel (0, 0) is the upper left corner, with x to the
@@ -19,14 +19,14 @@ pub struct HmdView {
     focal_px: f64,
 }
 
-/// The difference between the shown and the true position of a point in the picture.
+/// The offset between the shown and the true position of a point in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
     pub offset_px: DVec2,
     /// Length of the offset, px.
     pub pixels: f64,
-    /// Angle between the two directions, seen from the eye.
+    /// Angle between the shown and the true direction of the point, seen from the eye, degrees.
     pub degrees: f64,
 }
 
@@ -55,7 +55,7 @@ impl HmdView {
         .expect("the table's values are in range")
     }
 
-    /// Returns the distance of the eye from the picture, in pixels.
+    /// Returns the distance from the eye to the picture, in pixels.
     pub fn focal_px(&self) -> f64 {
         self.focal_px
     }
@@ -70,14 +70,14 @@ impl HmdView {
         DVec2::new(self.width_px, self.height_px) / 2.0
     }
 
-    /// Returns the pixels per degree, averaged over the width, which is the papers' measure. A flat picture has fewer
-    /// pixels per degree in the middle and more at the edge.
+    /// Returns the average number of pixels per degree over the width of the picture, as the papers do. A flat picture
+    /// has fewer pixels per degree in the middle than at the edge.
     pub fn mean_px_per_deg(&self) -> f64 {
         self.width_px / self.horizontal_deg
     }
 
-    /// Returns the position in the picture of a point in head axes (m, -z ahead), or `None` behind the eye. The
-    /// position may lie outside the picture.
+    /// Projects a point in head axes (m, the view along -z) to its position in the picture, px. The position may lie
+    /// outside the picture. Returns `None` for a point behind the eye.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let depth = -point.z;
         (depth > NEAREST_M).then(|| self.centre_px() + DVec2::new(point.x, -point.y) * (self.focal_px / depth))
@@ -88,8 +88,8 @@ impl HmdView {
         (0.0..=self.width_px).contains(&place.x) && (0.0..=self.height_px).contains(&place.y)
     }
 
-    /// Returns the error of a world point that was drawn for one pose and is seen from another. Returns `None` if the
-    /// point is behind the eye in either pose.
+    /// Returns the error of a world point that was drawn for the pose `drawn_for` and is seen from the pose
+    /// `seen_from`. Returns `None` if the point is behind the eye in either pose.
     pub fn misregistration_at(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<Misregistration> {
         let drawn = drawn_for.view_of(world);
         let seen = seen_from.view_of(world);
@@ -98,20 +98,21 @@ impl HmdView {
         Some(Misregistration { offset_px, pixels: offset_px.length(), degrees })
     }
 
-    /// Returns the error of a late frame by the papers' measure. The point is `distance_m` ahead on the axis of view
-    /// when the frame begins. The error is the offset from the true position when the frame is shown.
+    /// Returns the error of a late frame as the papers measure it. When the frame begins, the point lies `distance_m`
+    /// ahead on the axis of view. The error is the offset of the drawn point from its true position when the frame is
+    /// shown.
     pub fn centre_misregistration(&self, begun: &Pose, shown: &Pose, distance_m: f64) -> Option<Misregistration> {
         let point = begun.position + begun.orientation * (DVec3::NEG_Z * distance_m);
         self.misregistration_at(point, begun, shown)
     }
 }
 
-/// Returns the angle in degrees that a steady turn covers in a span.
+/// Returns the angle (degrees) through which a head turns during a span at constant speed.
 pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
 }
 
-/// Returns the angle between two vectors, radians, with full accuracy for small angles too.
+/// Returns the angle between two vectors, radians. Small angles keep full accuracy.
 pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
@@ -175,7 +176,7 @@ mod tests {
 
     #[test]
     fn latencies_of_90_and_50_ms_err_as_1_8_to_1() {
-        // At 40 deg/s, the mean of recorded use; the tangent adds 0.1 %.
+        // At 40 deg/s, the mean speed of recorded use. The tangent adds 0.1 %.
         let pan = Pan::at(40.0);
         let [at_90, at_50] = [90, 50].map(|ms| {
             HmdView::ntsc().centre_misregistration(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels

@@ -1,4 +1,4 @@
-//! Pixel errors of late or shifted pictures, and the mathematics of methods that reduce these errors.
+//! Pixel errors of late or shifted pictures, and formulas of the methods that reduce these errors.
 
 pub mod dual_list;
 mod frameless;

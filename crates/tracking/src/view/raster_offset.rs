@@ -7,48 +7,49 @@ use crate::rotation;
 use crate::time::span_s;
 
 /// The raster offset of VDRT (Breglia 1981). Just before scan-out, a picture drawn for a predicted pose is shifted by
-/// the yaw and pitch error of the prediction. During the field the shift follows the rates of yaw and pitch.
+/// the yaw and pitch error of the prediction. During the field the shift changes at the rates of yaw and pitch.
 ///
-/// Yaw and pitch are about the axes of the head. On a raster that rotates as a whole (a projector), the offset is exact
-/// for yaw and pitch errors of distant points. A flat raster can only be shifted, and the offset is exact only in the
-/// middle. Errors by roll and translation remain.
+/// Yaw and pitch are about the axes of the head. A projector can rotate its whole raster. The offset is then exact for
+/// yaw and pitch errors of distant points. A flat raster can only be shifted, so the offset is exact only in the
+/// middle. Errors by roll and translation always remain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RasterOffset {
-    /// Yaw of the offset, radians. A positive value moves the picture to the left.
+    /// Yaw angle of the offset, radians. A positive value moves the picture to the left.
     pub yaw: f64,
-    /// Pitch of the offset, radians. A positive value moves the picture up.
+    /// Pitch angle of the offset, radians. A positive value moves the picture up.
     pub pitch: f64,
     /// Rate of change of the offset's yaw, rad/s.
     pub yaw_rate: f64,
     /// Rate of change of the offset's pitch, rad/s.
     pub pitch_rate: f64,
-    /// Instant at which `yaw` and `pitch` hold, ps.
+    /// Instant at which the offset is exactly `yaw` and `pitch`, ps.
     pub at_ps: u64,
 }
 
 impl RasterOffset {
-    /// Returns the offset at `at_ps` for a picture drawn for `predicted` and seen from `actual`. The offset is constant
-    /// during the field.
+    /// Returns the offset at `at_ps` for a picture that was drawn for the pose `predicted` and is seen from the pose
+    /// `actual`. This offset does not change during the field.
     pub fn between(predicted: &Pose, actual: &Pose, at_ps: u64) -> Self {
         let error = actual.orientation.conjugate() * predicted.orientation;
         let (yaw, pitch, _roll) = rotation::to_yaw_pitch_roll(error);
         Self { yaw, pitch, yaw_rate: 0.0, pitch_rate: 0.0, at_ps }
     }
 
-    /// Returns the offset with the rates of a head that turns with `angular_velocity` (rad/s, world frame) after the
-    /// picture was drawn. The rates are exact for a turn about one of the two axes.
+    /// Returns the offset with rates of change for a head that turns with `angular_velocity` (rad/s, world frame) after
+    /// the picture was drawn. The rates are exact for a turn about either axis alone.
     pub fn with_rates(self, actual: &Pose, angular_velocity: DVec3) -> Self {
         let of_head = actual.orientation.conjugate() * angular_velocity;
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }
     }
 
-    /// Returns yaw and pitch of the offset at `t_ps`.
+    /// Returns yaw and pitch of the offset at `t_ps`, radians.
     fn angles(&self, t_ps: u64) -> (f64, f64) {
         let dt_s = span_s(self.at_ps, t_ps);
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)
     }
 
-    /// Returns the direction in which a drawn direction is seen at `t_ps` on a raster that rotates as a whole.
+    /// Returns the direction at which a viewer sees the drawn direction `drawn` at `t_ps`, on a raster that rotates as
+    /// a whole.
     pub fn turned(&self, drawn: DVec3, t_ps: u64) -> DVec3 {
         let (yaw, pitch) = self.angles(t_ps);
         rotation::about_y(yaw) * (rotation::about_x(pitch) * drawn)
@@ -60,8 +61,8 @@ impl RasterOffset {
         view.project(middle).map_or(DVec2::ZERO, |place| place - view.centre_px())
     }
 
-    /// Returns the remaining error of a world point at `t_ps` in degrees, on a raster that rotates as a whole. The
-    /// point was drawn for `predicted` and is seen from `actual`.
+    /// Returns the angular error (degrees) of a world point that remains after the offset at `t_ps`, on a raster that
+    /// rotates as a whole. The point was drawn for the pose `predicted` and is seen from the pose `actual`.
     pub fn residual_deg(&self, world: DVec3, predicted: &Pose, actual: &Pose, t_ps: u64) -> f64 {
         let shown = self.turned(predicted.view_of(world), t_ps);
         angle_between(shown, actual.view_of(world)).to_degrees()

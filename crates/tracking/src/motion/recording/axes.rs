@@ -2,11 +2,12 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::pose::Pose;
 
-/// The axis convention of a recording: the axes of the head (or of its sensor), and the up direction of the world.
+/// The convention for the coordinate axes of a recording: the axes of the head or of its sensor, and the up direction
+/// of the world.
 ///
-/// Two fixed rotations convert a pose into this crate's axes (right-handed, y up, looking along -z). The position
-/// becomes W p and the orientation W q B. W rotates the recorded world's axes to this crate's, and B rotates this
-/// crate's head axes to the recorded ones.
+/// Two constant rotations W and B convert a recorded pose (p, q) into this crate's axes, which are right-handed with y
+/// up and the view along -z. The position becomes W p and the orientation W q B. W rotates the recorded world axes to
+/// this crate's world axes. B rotates this crate's head axes to the recorded head axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// The axes of this crate and of OpenGL. Head: x right, y up, looks along -z. World: y up.
@@ -71,7 +72,8 @@ fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
 mod tests {
     use super::*;
 
-    /// For each convention: right, up and ahead of a head in the recorded head axes, and up in the recorded world axes.
+    /// Meaning of the recorded axes for each convention. The three vectors are right, up and ahead of a head in the
+    /// recorded head axes. The last vector is up in the recorded world axes.
     const MEANING: [(Axes, [DVec3; 3], DVec3); 4] = [
         (Axes::OpenGl, [DVec3::X, DVec3::Y, DVec3::NEG_Z], DVec3::Y),
         (Axes::Optical, [DVec3::X, DVec3::NEG_Y, DVec3::Z], DVec3::Z),

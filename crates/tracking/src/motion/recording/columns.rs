@@ -5,25 +5,25 @@ use super::RecordingError;
 /// Description of a complete mapping, for error messages.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
 
-/// A mapping from fields of a sample to columns of a text file. A column is given by its name in the header or by its
-/// number from 1.
+/// A mapping from the quantities of a sample to the columns of a text file. A column is given by its name in the header
+/// or by its number from 1.
 ///
-/// The name of a field states its unit: `t` is in seconds, `t_ms`, `t_us` and `t_ns` in smaller units. `x`, `y` and `z`
-/// are in metres, `x_mm` and so on in millimetres. `qw` is the real part of the quaternion that rotates head axes into
-/// world axes.
+/// The name of a quantity states its unit. `t` is in seconds, and `t_ms`, `t_us` and `t_ns` are in milliseconds,
+/// microseconds and nanoseconds. `x`, `y` and `z` are in metres, and `x_mm`, `y_mm` and `z_mm` in millimetres. `qw`,
+/// `qx`, `qy` and `qz` form the quaternion that rotates head axes into world axes, with real part `qw`.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Columns {
-    /// Field and column of each mapped pair, in the order in which they were given.
+    /// Mapped quantities with their columns, in the order in which the user gave them.
     given: Vec<(&'static Field, String)>,
 }
 
-/// A field of a sample in a certain unit.
+/// A quantity of a sample, such as the time or one coordinate, with its unit.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
-    /// Index of the quantity in the sequence time, x, y, z, qw, qx, qy, qz.
+    /// Index of the quantity in the list time, x, y, z, qw, qx, qy, qz.
     slot: usize,
-    /// Decimal exponent of the unit: the unit is 10^-`places` seconds or metres.
+    /// Number of decimal places of the unit: the unit is 10^-`places` seconds or metres.
     places: i32,
 }
 
@@ -57,16 +57,17 @@ pub(super) struct Column {
 }
 
 impl Columns {
-    /// Returns the names of all fields that [`Self::map`] accepts.
+    /// Returns the names of all quantities that [`Self::map`] accepts.
     pub fn fields() -> impl Iterator<Item = &'static str> {
         FIELDS.iter().map(|field| field.name)
     }
 
-    /// Maps a field to a column.
+    /// Assigns a column of the file to a quantity. `field` is the name of the quantity, and `column` the name or number
+    /// of the column.
     ///
     /// # Errors
     ///
-    /// [`RecordingError::Mapping`] if the field is unknown, or if its quantity already has a column.
+    /// [`RecordingError::Mapping`] if the quantity is unknown or already has a column.
     pub fn map(&mut self, field: &str, column: &str) -> Result<(), RecordingError> {
         let mapping = |found: String| RecordingError::Mapping { expected: EXPECTED, found };
         let known = FIELDS.iter().find(|known| known.name == field);
@@ -78,7 +79,7 @@ impl Columns {
         Ok(())
     }
 
-    /// Parses a mapping such as `t_ns=stamp,x=px,y=py`.
+    /// Parses a mapping of quantities to columns such as `t_ns=stamp,x=px,y=py`.
     pub fn parse(text: &str) -> Result<Self, RecordingError> {
         let mut columns = Self::default();
         for part in text.split(',') {
@@ -89,23 +90,23 @@ impl Columns {
         Ok(columns)
     }
 
-    /// Returns the mapped fields with their columns, in the order in which they were given.
+    /// Returns the names of the mapped quantities with their columns, in the order in which the user gave them.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.given.iter().map(|(field, column)| (field.name, column.as_str()))
     }
 
-    /// Returns true if no field is mapped.
+    /// Returns true if no quantity is mapped to a column.
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
     }
 
-    /// Returns true if every column is given by a number. A file then needs no header.
+    /// Returns true if every column is given by its number. The file then needs no header.
     pub(super) fn are_numbers(&self) -> bool {
         self.given.iter().all(|(_, column)| number(column).is_some())
     }
 
-    /// Returns the columns of a file with this header, in the order of the slots. An empty `header` means that the file
-    /// has none.
+    /// Returns the columns of a file with this header, in the order time, x, y, z, qw, qx, qy, qz. An empty `header`
+    /// means that the file has no header.
     pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
         // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();
@@ -125,7 +126,7 @@ impl Columns {
     }
 }
 
-/// Converts a column number from 1 into an index from 0.
+/// Parses a column number that counts from 1, and returns the index that counts from 0.
 fn number(column: &str) -> Option<usize> {
     column.parse::<usize>().ok()?.checked_sub(1)
 }

@@ -1,9 +1,9 @@
-/// Greatest number of digits in a time stamp. A stamp of nanoseconds since 1970 has 19 digits.
+/// Greatest number of digits in a time stamp. A time stamp in nanoseconds since 1970 has 19 digits.
 const MOST_DIGITS: usize = 30;
 
-/// Parses a decimal number exactly, in units of 10^-`places` (12 for seconds in picoseconds), and rounds it to the
-/// nearest unit. A stamp with 10 digits before the point keeps all 9 digits after it, which an `f64` would lose.
-/// Returns `None` if the text is not a number.
+/// Parses a decimal number exactly and rounds it to a multiple of 10^-`places`. For seconds, 12 places give
+/// picoseconds. A time stamp with 10 digits before the decimal point keeps all 9 digits after the point, which an `f64`
+/// would lose. Returns `None` if the text is not a number.
 pub(super) fn scaled(text: &str, places: i32) -> Option<i128> {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
@@ -33,8 +33,8 @@ fn multiplied(number: i128, power: i32) -> Option<i128> {
     number.checked_mul(10i128.checked_pow(power.try_into().ok()?)?)
 }
 
-/// Divides by 10^`power` and rounds to the nearest. Returns 0 if 10^`power` overflows, because `number` has at most 30
-/// digits.
+/// Divides by 10^`power` and rounds to the nearest integer. Returns 0 if 10^`power` overflows, because `number` has at
+/// most 30 digits.
 fn divided(number: i128, power: i32) -> i128 {
     let divisor = u32::try_from(power).ok().and_then(|power| 10i128.checked_pow(power));
     divisor.map_or(0, |divisor| (number + divisor / 2) / divisor)

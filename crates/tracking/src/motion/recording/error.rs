@@ -2,7 +2,7 @@ use thiserror::Error;
 
 use super::{FARTHEST_M, FASTEST, LATEST_S};
 
-/// The reason why a recording cannot be replayed. Lines count from 1, and times are in seconds.
+/// The reason why a recorded head motion cannot be replayed. Line numbers count from 1, and times are in seconds.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
@@ -27,45 +27,45 @@ pub enum RecordingError {
         /// Text of the line, as it was read.
         found: String,
     },
-    /// A pose log leaves out columns.
+    /// The header of a pose log lacks required columns.
     #[error("line {line}: expected the columns of a pose log, of which {missing} are missing; found {found}")]
     PoseLog {
         /// Number of the line, from 1.
         line: u64,
-        /// The columns that are missing.
+        /// Required columns that the header lacks, separated by commas.
         missing: String,
-        /// The columns that there are.
+        /// Columns that the header contains, separated by commas.
         found: String,
     },
-    /// A line of a file of JSON lines cannot be read.
+    /// A line of a file with one JSON object per line cannot be parsed.
     #[error("line {line}: expected an object of JSON, found {found}")]
     Json {
         /// Number of the line, from 1.
         line: u64,
-        /// Message of the reader.
+        /// Message of the JSON parser, or a description of the missing columns.
         found: String,
     },
-    /// The file lacks a mapped column.
+    /// A column that the user's mapping names does not exist in the file.
     #[error("line {line}: expected a column `{expected}` for {field}, found {found}")]
     Column {
         /// Number of the header's line, from 1.
         line: u64,
-        /// Name of the field that is mapped to the missing column.
+        /// Name of the quantity that is mapped to the missing column.
         field: String,
         /// Name or number of the missing column.
         expected: String,
-        /// Columns that the header has, separated by commas.
+        /// Columns that the header contains, separated by commas.
         found: String,
     },
-    /// A mapping is incomplete, maps a quantity twice, or uses an unknown field.
+    /// The user's mapping of quantities to columns is incomplete, has a quantity twice, or has an unknown quantity.
     #[error("columns: expected {expected}, found {found}")]
     Mapping {
         /// Description of a complete mapping.
         expected: &'static str,
-        /// The mapping that was given, or the part with the error.
+        /// The mapping that the user gave, or the erroneous part of it.
         found: String,
     },
-    /// A line has too few fields, or too many.
+    /// A line has too few or too many fields.
     #[error("line {line}: expected {expected} fields, found {found}")]
     Fields {
         /// Number of the line, from 1.
@@ -92,8 +92,8 @@ pub enum RecordingError {
         line: u64,
         /// Name of the column, as in the header.
         column: String,
-        /// Time stamp of this line, s. For a file whose time counts from its first line, this is the time since the
-        /// first line.
+        /// Time stamp of this line, s. In most formats the time counts from the first line of the file, and then this
+        /// is the time since the first line.
         found_s: f64,
     },
     /// A time stamp is earlier than the time stamp of the line before.
@@ -118,7 +118,7 @@ pub enum RecordingError {
         /// Length of the recorded quaternion.
         found: f64,
     },
-    /// A coordinate of a position exceeds the limit, which is larger than the Earth.
+    /// A coordinate of a position exceeds the limit of 10^8 m, which is more than the size of the Earth.
     #[error("line {line}, {column}: expected -{FARTHEST_M:e} to {FARTHEST_M:e} m, found {found_m:e} m")]
     TooFar {
         /// Number of the line, from 1.
@@ -128,14 +128,14 @@ pub enum RecordingError {
         /// The coordinate that is out of range, m.
         found_m: f64,
     },
-    /// The head moves or turns between two samples faster than any real motion.
+    /// The head moves or turns between two samples faster than the limit of 10^6 m/s or 10^6 rad/s.
     #[error(
         "line {line}: expected at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before, found {found:e} {unit}"
     )]
     TooFast {
         /// Number of the line, from 1.
         line: u64,
-        /// Speed since the sample before, in `unit`.
+        /// Speed of the head since the previous sample, in `unit`.
         found: f64,
         /// Unit of the speed: m/s or rad/s.
         unit: &'static str,

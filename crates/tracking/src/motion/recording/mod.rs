@@ -21,36 +21,36 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::span_s;
 
-/// Latest time stamp of a recording: 10^7 s (115 days), safely below the end of simulated time.
+/// Latest time stamp of a recording: 10^7 s (115 days). Simulated time ends after 213 days.
 const LATEST_S: f64 = 1e7;
 
-/// Farthest coordinate of a recording, m. Assumed, with a range of 1e6 to 1e12. Map coordinates, which count from the
-/// equator, reach 1e7. The square of this limit is far from the limit of single precision.
+/// Greatest absolute coordinate in a recording, m. Assumed, with a range of 1e6 to 1e12. Map coordinates, which count
+/// from the equator, reach 1e7. The square of this limit still fits into single precision.
 const FARTHEST_M: f64 = 1e8;
 
-/// Fastest movement between two samples, m/s, and fastest turn, rad/s. Assumed, with a range of 1e3 to 1e9. A head
-/// never moves so fast. The limit is this high because a recording jumps within a millisecond when a tracker loses its
-/// position and finds it again.
+/// Fastest movement (m/s) and fastest turn (rad/s) between two samples. Assumed, with a range of 1e3 to 1e9. A head
+/// never moves so fast. The limit is high because a recorded position can jump within a millisecond, after the tracker
+/// has lost and found the head.
 const FASTEST: f64 = 1e6;
 
-/// Least length of a gap: a multiple of the median time between two samples, and a time in seconds (`GAP_S`). Assumed,
-/// with ranges of 3 to 20 and 0.1 to 1. At 200 degrees per second a head turns by 40 degrees in 0.2 s, which no
-/// interpolation can reconstruct.
+/// Least length of a gap, as a multiple of the median time between two samples. A gap must also be longer than `GAP_S`
+/// seconds. Both are assumed, with ranges of 3 to 20 and 0.1 to 1. At 200 degrees per second a head turns by 40 degrees
+/// in 0.2 s, which no interpolation can reconstruct.
 const GAP_TIMES: u64 = 5;
 const GAP_S: f64 = 0.2;
 
 /// The time stamp (ps) and the pose of a sample.
 type Sample = (u64, Pose);
 
-/// The behaviour of a recording after its last sample.
+/// The behaviour of the replayed head after the last sample of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum End {
-    /// A run that continues after the last sample is refused.
+    /// A run that would continue after the last sample is an error.
     #[default]
     Refuse,
     /// The head stands still after the last sample, and also during gaps.
     Hold,
-    /// The recording begins again. The head jumps unless the recording ends at its first pose.
+    /// The recording starts again from its first sample. The head jumps unless the first and the last pose are equal.
     Loop,
 }
 
@@ -64,48 +64,49 @@ impl End {
     }
 }
 
-/// The format of a recording's file, where the contents of the file do not determine it.
+/// The format of a recorded file, as far as the contents of the file do not show it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingFormat {
-    /// Mapping from fields to columns. The mapping is empty for a file whose header or first line is recognized.
+    /// Mapping from quantities to columns. The mapping is empty for a file whose format is recognized from its header
+    /// or first line.
     pub columns: Columns,
-    /// Axis convention of the file, or `None` for the usual convention of this kind of file.
+    /// Convention for the coordinate axes of the file. `None` selects the usual convention of the file's format.
     pub axes: Option<Axes>,
 }
 
-/// A replayed recording of poses: linear interpolation between positions, slerp between orientations. Before the first
+/// A replayed recording of head poses. Positions are interpolated linearly, and orientations by slerp. Before the first
 /// sample the head stands still. [`End`] defines the behaviour after the last sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     samples: Vec<Sample>,
     end: End,
-    /// Gaps in the order of time, each as the times (ps) of the samples before and after it.
+    /// Gaps in the order of time. Each gap is given by the times (ps) of the samples before and after it.
     gaps: Vec<(u64, u64)>,
     warnings: Vec<String>,
 }
 
 impl Recording {
-    /// Reads a file of poses, whose times must rise. If several samples have the same time, only the first is kept
-    /// ([`Motion::warnings`]). The contents of the file determine its kind:
+    /// Reads a file of poses with ascending time stamps. If several samples have the same time stamp, only the first is
+    /// kept, and [`Motion::warnings`] reports this. The contents of the file determine its format:
     ///
     /// | file | first line | time | quaternion | axes |
     /// |---|---|---|---|---|
-    /// | own | `time_s,x,y,z,qw,qx,qy,qz` | seconds, as they are | real part first | [`Axes::OpenGl`] |
+    /// | own | `time_s,x,y,z,qw,qx,qy,qz` | seconds, unchanged | real part first | [`Axes::OpenGl`] |
     /// | EuRoC | `#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...` and any more columns | nanoseconds, from the first line | real part first | [`Axes::Euroc`] |
-    /// | TUM | eight numbers apart by spaces, behind comments (`#`) | seconds, from the first line | real part last | [`Axes::Optical`] |
-    /// | pose log | a header with `predicted_display_time`, `position_x`, ..., `orientation_w` in any order, or a line of JSON with these | nanoseconds unless the name ends in `_us`, `_ms` or `_s`, from the first line | by name | [`Axes::OpenGl`], which are OpenXR's |
+    /// | TUM | eight numbers separated by spaces, after comments (`#`) | seconds, from the first line | real part last | [`Axes::Optical`] |
+    /// | pose log | a header with `predicted_display_time`, `position_x`, ..., `orientation_w` in any order, or a line of JSON with these names | nanoseconds unless the name ends in `_us`, `_ms` or `_s`, from the first line | by name | [`Axes::OpenGl`], as in OpenXR |
     ///
-    /// Positions are in metres, and quaternions rotate the head's axes into the world's.
+    /// Positions are in metres. Quaternions rotate the head's axes into the world's axes.
     ///
     /// # Errors
     ///
-    /// [`RecordingError`] names line and column, what was expected and what was found.
+    /// [`RecordingError`] names the line, the column, the expected content and the found content.
     pub fn read(input: impl Read) -> Result<Self, RecordingError> {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// Reads a file of poses with given columns and axes. If columns are given, the file may have other columns too,
-    /// and time counts from its first line. Commas, semicolons, tabs or blanks separate the columns.
+    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have further
+    /// columns, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
     ///
     /// # Errors
     ///
@@ -117,7 +118,7 @@ impl Recording {
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(unreadable("expected UTF-8 text, found text in units of 16 bits".to_owned()));
         }
-        // UTF-16 was refused above. Comments may have any encoding, so invalid UTF-8 is replaced.
+        // UTF-16 was rejected above. Comments may have any encoding, so invalid UTF-8 is replaced.
         let text = String::from_utf8_lossy(&bytes);
         let read::Samples { samples, repeated } = read::samples(&text, &format.columns, format.axes)?;
         let gaps = gaps(&samples);
@@ -125,18 +126,18 @@ impl Recording {
         Ok(Self { samples, end: End::default(), gaps, warnings })
     }
 
-    /// Returns true if the head stands still after this sample because a gap follows it.
+    /// Returns true if a gap follows this sample and the head stands still during the gap.
     fn holds_between(&self, (before_ps, _): &Sample) -> bool {
         self.end == End::Hold && self.gaps.binary_search_by_key(before_ps, |(from_ps, _)| *from_ps).is_ok()
     }
 
-    /// Returns the same recording with another behaviour at its end.
+    /// Returns the same recording with another behaviour after its last sample.
     #[must_use]
     pub fn ending(self, end: End) -> Self {
         Self { end, ..self }
     }
 
-    /// Returns the time stamps of the first and the last sample.
+    /// Returns the time stamps (ps) of the first and the last sample.
     pub fn span_ps(&self) -> (u64, u64) {
         (self.samples[0].0, self.samples[self.samples.len() - 1].0)
     }
@@ -146,12 +147,12 @@ impl Recording {
         self.samples.len()
     }
 
-    /// Appends the samples of another recording, all of which must be later.
+    /// Appends the samples of another recording. All of them must be later than the last sample of this recording.
     pub(super) fn append(&mut self, more: &Self) {
         self.samples.extend_from_slice(&more.samples);
     }
 
-    /// Maps an instant of a looped recording to the corresponding instant between its first and last sample.
+    /// Returns the instant of the recording that a loop shows at time `t_ps`, between the first and the last sample.
     fn within(&self, t_ps: u64) -> u64 {
         let (first_ps, last_ps) = self.span_ps();
         match self.end {
@@ -160,7 +161,7 @@ impl Recording {
         }
     }
 
-    /// Returns the samples before and after `t_ps`, or `None` outside the recording.
+    /// Returns the two samples before and after the time `t_ps`, or `None` for a time outside the recording.
     fn bracket(&self, t_ps: u64) -> Option<(&Sample, &Sample)> {
         let after = self.samples.partition_point(|(t, _)| *t <= t_ps);
         Some((self.samples.get(after.checked_sub(1)?)?, self.samples.get(after)?))
@@ -209,7 +210,8 @@ impl Motion for Recording {
     }
 }
 
-/// Returns the gaps between samples: spans that are much longer than the median span.
+/// Returns the gaps of a recording: pairs of successive samples that are much farther apart than the median time
+/// between samples.
 fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     let spans = || samples.windows(2).map(|pair| (pair[0].0, pair[1].0));
     let mut lengths: Vec<u64> = spans().map(|(from_ps, to_ps)| to_ps - from_ps).collect();
@@ -224,7 +226,7 @@ fn gaps(samples: &[Sample]) -> Vec<(u64, u64)> {
     spans().filter(is_gap).collect()
 }
 
-/// Number of gaps that a warning lists one by one.
+/// Greatest number of gaps that a warning lists one by one.
 const GAPS_LISTED: usize = 3;
 
 fn gap_warning(gaps: &[(u64, u64)]) -> Option<String> {

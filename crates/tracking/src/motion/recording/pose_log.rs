@@ -1,11 +1,12 @@
-//! Pose logs as programs on OpenXR write them: a predicted display time, a position and an orientation, as CSV or as lines of JSON.
+//! Reader of pose logs as OpenXR programs write them: predicted display time, position and orientation, as CSV or as
+//! one JSON object per line.
 
 use serde_json::Value;
 
 use super::RecordingError;
 use super::columns::Column;
 
-/// Names of the columns without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
+/// Column names without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
 const NAMES: [&str; 8] = [
     "predicted_display_time",
     "position_x",
@@ -17,12 +18,14 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Units of a time as the end of its name, as places of a second. Without one it is an `XrTime`: nanoseconds.
+/// Units of a time by the suffix of its name, each as a number of decimal places of a second. A name without suffix is
+/// in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
 
-/// A column's name in words of small letters with `_` between them: `pose.position.x` and `posePositionX` are `position_x`.
+/// Returns a column name in lower case with `_` between words: `pose.position.x` and `posePositionX` become
+/// `position_x`.
 fn normal(name: &str) -> String {
     let mut words = String::new();
     let mut before = '_';
@@ -37,7 +40,8 @@ fn normal(name: &str) -> String {
     bare.strip_prefix("pose_").unwrap_or(bare).to_owned()
 }
 
-/// The place of a name in [`NAMES`], and for a time its unit.
+/// Returns the index of a column name in [`NAMES`] and the decimal places of its unit. Returns `None` for an unknown
+/// name.
 fn slot(name: &str) -> Option<(usize, i32)> {
     let normal = normal(name);
     if let Some(slot) = NAMES.iter().position(|known| *known == normal) {
@@ -47,14 +51,15 @@ fn slot(name: &str) -> Option<(usize, i32)> {
     unit.map(|(_, places)| (0, *places))
 }
 
-/// Returns true if a header is that of a pose log: it has a predicted display time, or a position and an orientation.
+/// Returns true if a header belongs to a pose log: it has a predicted display time, or a position and an orientation.
 pub(super) fn is_header(header: &[&str]) -> bool {
     let has =
         |begin: &str| header.iter().any(|name| slot(name).is_some_and(|(slot, _)| NAMES[slot].starts_with(begin)));
     has("predicted") || (has("position") && has("orientation"))
 }
 
-/// The columns of a pose log, wherever they stand among others.
+/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain them in any order, among
+/// other columns.
 pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
     let mut found: [Option<Column>; 8] = Default::default();
     for (index, name) in header.iter().enumerate() {
@@ -72,12 +77,13 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], Recordi
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if a file is lines of JSON.
+/// Returns true if the file has one JSON object per line, judged by its first line.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }
 
-/// A line of JSON as the fields of a sample, in the order of [`NAMES`], with the name and the unit of its time.
+/// Parses a line of JSON. Returns the texts of the eight quantities in the order of [`NAMES`], and the name and unit of
+/// the time.
 pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column), RecordingError> {
     let unreadable = |found: String| RecordingError::Json { line, found };
     let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
@@ -90,7 +96,8 @@ pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column)
     Ok((fields, time))
 }
 
-/// The numbers of a value with their paths. Lists are x, y, z and w, in the order of OpenXR.
+/// Adds all numbers and texts within a JSON value to `all`, each with its path. The elements of a list are named x, y,
+/// z and w, in the order of OpenXR.
 fn flatten(path: &str, value: &Value, all: &mut Vec<(String, String)>) {
     let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     match value {
@@ -103,7 +110,7 @@ fn flatten(path: &str, value: &Value, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// Names of the columns of a sample that came from JSON, in their order.
+/// Returns the columns of a sample that was parsed from JSON, in the order of [`NAMES`].
 pub(super) fn json_columns(time: &Column) -> [Column; 8] {
     std::array::from_fn(|index| Column {
         index,
@@ -121,7 +128,7 @@ mod tests {
         Recording::read(text.as_bytes())
     }
 
-    /// A quarter of a turn to the left within a second, while the head goes 2 m to the right.
+    /// A pose log in which the head turns a quarter to the left and moves 2 m to the right within a second.
     const CSV: &str = "frame,predictedDisplayTime,position.x,position.y,position.z,orientation.x,orientation.y,orientation.z,orientation.w\n\
         7,5000000000,0,1.5,0,0,0,0,1\n8,6000000000,2,1.5,0,0,0.70710678,0,0.70710678\n";
 

@@ -9,24 +9,25 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
 
-/// Columns of this crate's own files: seconds, metres, unit quaternion (head to world, real part first).
+/// Columns of this crate's own files: time in seconds, position in metres, and the unit quaternion from head axes to
+/// world axes, real part first.
 const OWN: [&str; 8] = ["time_s", "x", "y", "z", "qw", "qx", "qy", "qz"];
 
-/// Endings of the column names of a EuRoC ground truth, without units, in the order of the file.
+/// Suffixes of the column names of a EuRoC ground truth file, without units, in the order of the file.
 const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"];
 
-/// Columns of a TUM trajectory in the order of the file, with the real part of the quaternion last. A TUM file has no
+/// Columns of a TUM trajectory file in their order, with the real part of the quaternion last. A TUM file has no
 /// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Indices in a TUM line of time, position and quaternion, with the real part of the quaternion first.
+/// Indices of time, position and quaternion in a line of a TUM file. The real part of the quaternion comes first here.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
-/// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals stays well within
-/// this limit.
+/// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals causes a much
+/// smaller difference.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// The line format of a file.
+/// The format of the lines of a file: separator, columns and header.
 struct Layout {
     /// Character that separates the fields, or `None` for any white space.
     separator: Option<char>,
@@ -35,9 +36,9 @@ struct Layout {
     /// Exact number of fields in a line. With `None`, a line may have more fields than the columns need.
     n_fields: Option<usize>,
     axes: Axes,
-    /// True if time counts from the first line, whatever its stamp.
+    /// True if time counts from the first sample, whose time stamp can have any value.
     from_first: bool,
-    /// Number of the header's line. Samples begin after it.
+    /// Line number of the header, or 0 without a header. Samples begin after this line.
     begins_after: u64,
 }
 
@@ -61,14 +62,14 @@ fn bare(field: &str) -> &str {
     field.trim().trim_matches('"')
 }
 
-/// The contents of a recording's file.
+/// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because they repeat a time.
+    /// Warning about samples that were left out because their time stamp equals that of the sample before.
     pub(super) repeated: Option<String>,
 }
 
-/// Reads the samples of a recording, in this crate's axes.
+/// Reads the samples of a recorded file and converts them to this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, RecordingError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
@@ -82,7 +83,7 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     collect(&lines, &layout, axes)
 }
 
-/// Reads lines of JSON, each as a line of fields.
+/// Reads the samples of a file with one JSON object per line.
 fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingError> {
     let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));
     let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, RecordingError>>()?;
@@ -101,7 +102,7 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingE
     collect(&lines, &layout, axes)
 }
 
-/// Reads the samples of lines, in this crate's axes.
+/// Parses lines as samples and converts them to this crate's axes.
 fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, RecordingError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
@@ -111,8 +112,8 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
         let (stamp_ps, pose) = layout.sample(line)?;
         let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
-        // Public ground truths have pairs of samples with one time: the tracker reported twice within one tick of its
-        // clock.
+        // Public ground truth files contain pairs of samples with one time stamp: the tracker reported twice within one
+        // tick of its clock.
         if samples.last().is_some_and(|(before_ps, _)| *before_ps == t_ps) {
             repeated.add(line.number);
             continue;
@@ -126,7 +127,7 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
     if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
-/// Counts samples that have the same time as the sample before.
+/// A count of the samples whose time stamp equals that of the sample before.
 #[derive(Default)]
 struct Repeated {
     count: usize,
@@ -159,7 +160,7 @@ fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sam
     too_fast.map_or(Ok(()), |(found, unit)| Err(RecordingError::TooFast { line: line.number, found, unit }))
 }
 
-/// Recognizes the layout of a file from its first lines.
+/// Recognizes the format of a file from its first lines.
 fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
     let first = lines.first().ok_or(RecordingError::Empty)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
@@ -184,7 +185,7 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
             begins_after,
         });
     }
-    // Case 3: a pose log, whose header has names of its columns in any order.
+    // Case 3: a pose log, whose header has the required column names in any order.
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
     let names = Line { number: first.number, text: first.text.trim_start_matches('#').trim() }.fields(separator);
     if pose_log::is_header(&names) {
@@ -203,7 +204,7 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
     Err(RecordingError::Format { line: first.number, found: first.text.to_owned() })
 }
 
-/// Returns true if a header belongs to a EuRoC ground truth. Columns after the first eight (velocity, biases) are
+/// Returns true if a header belongs to a EuRoC ground truth file. Columns after the first eight (velocity, biases) are
 /// ignored.
 fn is_euroc(header: &[&str]) -> bool {
     let name = |column: &str| column.split('[').next().unwrap_or_default().trim().to_owned();
@@ -215,7 +216,7 @@ fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 
     std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
 }
 
-/// Returns the layout of a file whose columns are given by a mapping.
+/// Returns the line format of a file whose columns are given by the user's mapping.
 fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingError> {
     let first = lines.first().ok_or(RecordingError::Empty)?;
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
@@ -276,7 +277,8 @@ impl Layout {
         Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
-    /// Returns the instant of a sample, after checking that times do not fall and stay below the limit.
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous one and stays below
+    /// the limit.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();
         let line = line.number;
