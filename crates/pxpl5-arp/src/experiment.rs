@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::motion::Walk;
 
-/// A report together with the scene and settings of the walk.
+/// A report of a walk, with the scene and settings of the walk.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkReport {
     /// Counters of the walk, and results of the view at its end.
@@ -48,7 +48,7 @@ pub struct WalkOutcome {
 }
 
 impl WalkOutcome {
-    /// Runs a walk. Calls `finished` with the number of frames done and the total.
+    /// Runs a walk. Calls `finished` with the number of finished frames and the number of all frames.
     ///
     /// # Errors
     ///
