@@ -84,7 +84,7 @@ impl CubeFace {
     }
 }
 
-/// Returns the index of the longest of three lengths. The first of equal lengths wins.
+/// Returns the index of the longest of three lengths. If several are equal, returns the first one.
 pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     if x >= y && x >= z {
         0

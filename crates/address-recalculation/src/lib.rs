@@ -30,7 +30,7 @@
 //! 6. **Address.** The position is the quotient, plus half of its last bit, times the size of the face. The upper bits
 //!    select the texel. The next bits, rounded, are the fractions. The four texels around the position lie in four
 //!    banks, so one access reads all of them. Without guard texels, a texel beyond an edge belongs to the neighbouring
-//!    face, and a texel beyond a corner is the mean of the other three ([`Footprint`]).
+//!    face. A texel beyond a corner is the mean of the other three ([`Footprint`]).
 //! 7. **Compose.** For each texel, the memory with the nearest depth is selected. At equal depths, it is the memory
 //!    with the lowest index. A texel with the farthest depth is empty. If all memories are empty, the background memory
 //!    or the background colour is visible ([`Composition`]).

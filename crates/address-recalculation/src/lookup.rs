@@ -63,9 +63,10 @@ impl<'a> Addressing<'a> {
         self.unit.footprint(matrix.turn(vector))
     }
 
-    /// Computes the footprints of up to [`BATCH`] pixels together, and returns true.
+    /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
+    /// true.
     ///
-    /// Returns false without computing anything in two cases: the words are too wide, or there are so few pixels that
+    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that
     /// computing them one by one is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;

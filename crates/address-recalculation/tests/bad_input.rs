@@ -74,8 +74,8 @@ fn a_table_has_a_vector_for_each_pixel_row_by_row() {
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
-/// Checks a lens that has slope zero in the corner of a picture of 2 x 1 pixels. There rho^2 is 1/4, and the slope is 1
-/// + 3 x 1/4 x -4/3 = 0.
+/// Checks a lens that has slope zero in the corner of a picture of 2 x 1 pixels. There rho^2 is 1/4, so the slope is
+/// `1 + 3 x 1/4 x -4/3 = 0`.
 #[test]
 fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();

@@ -152,8 +152,8 @@ fn those_regions_are_computed_that_a_pixel_reads() {
     assert!(counts.len() > 2, "{counts:?} regions");
 }
 
-/// Checks pictures that look at one place, near a border between regions or across the border. Texels 127 and 128 lie
-/// in different regions.
+/// Checks views of a small area near a border between regions or across the border. Texels 127 and 128 lie in different
+/// regions.
 #[test]
 fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };

@@ -1,4 +1,4 @@
-//! Properties that hold for every direction, rotation and content.
+//! Tests of properties that hold for every direction, rotation and content.
 
 mod support;
 

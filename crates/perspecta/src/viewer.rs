@@ -87,8 +87,8 @@ pub struct ViewOptions {
     /// Range of angles around the axis in which nothing is shown (a cutaway), in degrees from +x to +z. `None` shows
     /// everything.
     pub cut_deg: Option<[f64; 2]>,
-    /// True if the brightness of a pixel is proportional to |view . e_s|, the cosine of the angle between the direction
-    /// of view and the screen's normal.
+    /// True if brightness depends on the angle of the screen. The factor is |view . e_s|, the cosine of the angle
+    /// between the direction of view and the screen's normal.
     pub lambert: bool,
     /// Angle of slice 0 from +x towards +z, degrees.
     pub phase_deg: f64,

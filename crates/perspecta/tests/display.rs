@@ -1,4 +1,5 @@
-//! Tests of the display on the ring: the instants at which slices light, and volumes that have arrived only partly.
+//! Tests of the display on the ring: the instants at which slices are displayed, and volumes that have arrived only
+//! partly.
 
 use perspecta::{PerspectaConfig, volume_messages};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};

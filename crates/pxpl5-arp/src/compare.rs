@@ -29,9 +29,9 @@ pub const fn variant_count() -> u64 {
 /// Cost and image error of one combination of policy, segmentation and warping.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparedRow {
-    /// Name of the variant: policy, segmentation, warp.
+    /// Name of the variant: its policy, segmentation and warping.
     pub variant: &'static str,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
     /// Segments drawn per second.
     pub draws_per_s: f64,
@@ -56,9 +56,9 @@ pub struct ComparedRow {
 pub struct ArpComparison {
     pub schema: &'static str,
     pub scene: String,
-    /// Length of the walk in frames.
+    /// Length of the viewer's walk, in frames.
     pub frames: u64,
-    /// Speed of the walk in m/s.
+    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Results of the variants that succeeded.
     pub rows: Vec<ComparedRow>,

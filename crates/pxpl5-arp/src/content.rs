@@ -21,7 +21,7 @@ pub struct Content {
 }
 
 impl Content {
-    /// Returns the position at which a vertex is drawn, after warping.
+    /// Returns the position at which a vertex of the scene is drawn after warping.
     #[must_use]
     pub fn place(&self, vertex: DVec3) -> DVec3 {
         self.warp

@@ -1,4 +1,4 @@
-//! Scaling of a hall, and routes through it.
+//! Scaling of a hall, and routes of the viewer through it.
 
 use crate::error::ExperimentError;
 use glam::{DVec3, Vec3};

@@ -1,4 +1,4 @@
-//! Settings of a walk through a scene. Each setting has a path such as `priority.theta_deg`.
+//! Settings of a simulated walk of the viewer through a scene. Each setting has a path such as `priority.theta_deg`.
 
 use crate::error::ExperimentError;
 use crate::hall::Route;
@@ -9,11 +9,11 @@ use priority_rendering::Falloff;
 use std::collections::BTreeMap;
 
 parameters::parameter_table! {
-    /// Speed and length of a walk.
+    /// Speed and length of the viewer's walk.
     pub struct WalkNumbers {
         /// Walking speed along the scene's path.
         m_per_s: f64 = 1.0, "m/s", Published, 0.0..=3.0 in 0.0..=100.0, "CPR05 4.2: a walker";
-        /// Length of the walk in frames.
+        /// Length of the viewer's walk, in frames.
         frames: 1_800, "frames", Assumed, 60..=100_000 in 1..=1_000_000, "half a minute; table 1 is compared over two minutes";
         /// Factor that multiplies length and width of the scene and its path. Heights stay the same.
         hall_scale: f64 = 1.0, "1", Assumed, 0.25..=4.0 in 0.01..=100.0, "not printed; 0.5 makes the gallery 20 m wide, eight cells of 2.5 m";
@@ -41,7 +41,7 @@ const CHOICES: [&str; 10] = [
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Speed and length of the walk.
+    /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
     chosen: Settings,
     is_segmented: Option<bool>,

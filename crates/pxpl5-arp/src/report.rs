@@ -1,5 +1,5 @@
-//! The results of a walk, which a report holds as object `arp` with schema `pxpl5-arp/1`. Results that were not
-//! evaluated are null.
+//! The results of a viewer's walk, which a report contains as object `arp` with schema `pxpl5-arp/1`. Results that were
+//! not evaluated are null.
 
 use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
@@ -15,11 +15,11 @@ use std::collections::BTreeMap;
 /// Name and version of the layout of the report.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
-/// Results of a walk.
+/// Results of a viewer's walk through a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     pub schema: &'static str,
-    /// Texels along the edge of a face.
+    /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
     /// Event before which the display reads the head's orientation: `field`, `line` or `pixel`.
     pub latch: &'static str,
@@ -54,7 +54,7 @@ pub struct Report {
 /// Results of one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates per second.
+    /// Number of times per second that the memory shows a new update.
     pub updates_hz: f64,
     /// Mean number of frames between updates. Null without updates.
     pub period_frames: Option<f64>,
@@ -85,7 +85,7 @@ pub struct PriorityReport {
     pub theta_deg: Option<f64>,
     /// Side of a cell in metres. Null without cells.
     pub cell_m: Option<f64>,
-    /// Segments drawn per second.
+    /// Number of segments (parts of objects in one cell) that are drawn per second.
     pub draws_per_s: f64,
     /// Percentage of draws that the policy saves, relative to drawing everything in every frame.
     pub saved_percent: f64,
@@ -108,7 +108,7 @@ pub struct TearsReport {
     pub stretch: Option<Percentiles>,
 }
 
-/// A latency and its parts.
+/// A latency and its parts, in ms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Latency {
     /// Sum of all parts in ms.
@@ -117,17 +117,17 @@ pub struct Latency {
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 
-/// Statistics of a view at the end of a walk.
+/// Counts for a view at the end of the viewer's walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewStatistics {
     /// Counts of the texels that each pixel of the view reads.
     pub stats: LookStats,
-    /// Statistics of the faces drawn for the view.
+    /// Counts of the triangles drawn into the cube faces for the view.
     pub drawing: Drawing,
 }
 
 impl Report {
-    /// Creates the report of a walk, optionally with the statistics of a view at its end.
+    /// Creates the report of a viewer's walk, optionally with the counts of a view at its end.
     #[must_use]
     pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;

@@ -54,7 +54,7 @@ pub enum SourceKind {
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 100.0;
 
-/// Settings of an experiment, without the scene and the walk.
+/// Settings of an experiment, without the scene and the viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     pub policy: PolicyKind,
@@ -105,7 +105,7 @@ impl Settings {
         self
     }
 
-    /// Returns the settings with another side of cells, in metres.
+    /// Returns the settings with another side of a cell, in metres.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;

@@ -1,4 +1,5 @@
-//! Simulation of a walk, frame by frame: which memories are due for an update, their drawing, and their display.
+//! Simulation of a viewer's walk, frame by frame: which memories are due for an update, their drawing, and their
+//! display.
 
 use crate::content::{Content, warp};
 use crate::error::ExperimentError;
@@ -37,7 +38,7 @@ enum Policy {
     Cells(Cells),
 }
 
-/// Events of one frame.
+/// Memories that became due, were updated or missed the retrace in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
     /// Position of the eye.
@@ -53,7 +54,7 @@ pub struct FrameOutcome {
     pub deals_anew: bool,
 }
 
-/// A walk through a world, frame by frame.
+/// A viewer's walk through a scene, simulated frame by frame.
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
     world: &'a World,

@@ -6,7 +6,7 @@ use crate::content::Content;
 #[derive(Clone, Debug)]
 pub(crate) struct Job {
     pub(crate) content: Content,
-    /// Drawing time of the whole update, in seconds.
+    /// Time that the renderer needs to draw the whole update, in seconds.
     pub(crate) work_s: f64,
     pub(crate) left_s: f64,
     /// Bit mask of the memories that must be shown in the same frame as this memory. 0 if the memory is independent.

@@ -13,13 +13,13 @@ pub struct Tears {
     /// Angles of all tears as displayed, in radians, between the two directions in which two memories draw a shared
     /// vertex.
     pub after: Vec<f64>,
-    /// Angle by which warping moves each vertex of a warped memory, in radians.
+    /// Angles by which warping moves the vertices of a memory, in radians. Each vertex has one angle.
     pub stretch: Vec<f64>,
     /// Width in radians of the widest displayed tear, and its vertex as an index into [`World::vertices`].
     pub widest: Option<(f64, u32)>,
 }
 
-/// Returns for each segment the memory that shows it.
+/// Returns for each segment the index of the memory that shows it, or `None`.
 fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
     let mut holders = vec![None; world.segments.len()];
     for (memory, content) in shown.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A complete walk through a scene, with counters of its updates and draws.
+//! A complete walk of the viewer through a scene, with counters of updates and draws.
 
 use crate::error::ExperimentError;
 use crate::settings::{Settings, SourceKind};
@@ -34,13 +34,13 @@ pub struct MemoryTally {
     drawn_in: u64,
 }
 
-/// Counters of a walk.
+/// Counters of a viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
     pub frames: u64,
     /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
-    /// Number of new assignments of cells to memories.
+    /// Number of times that cells were assigned to memories anew.
     pub redeals: u64,
     /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
@@ -54,7 +54,7 @@ pub struct WalkTally {
 }
 
 impl WalkTally {
-    /// Returns the updates per second of each memory.
+    /// Returns the number of updates per second for each memory.
     #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()

@@ -8,7 +8,7 @@ use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The part of an object that lies in one cell.
+/// The part of an object that lies in one cell of the scene's floor plan.
 #[derive(Clone, Debug)]
 pub struct Segment {
     /// Index of the object that the segment was cut from.

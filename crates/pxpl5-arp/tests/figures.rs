@@ -33,11 +33,11 @@ fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_eve
     }
 }
 
-/// An independent program that models the policy gave 40.6, 25.7 and 16.0 Hz, with an error of 5.5 %.
+/// Compares with an independent program for the policy, which gave 40.6, 25.7 and 16.0 Hz, with an error of 5.5 %.
 ///
 /// Its rules were equal rings, distances to occupied cells, and a straight walk through the middle of seven cells. With
-/// doubling rings and the block's border, its errors were 4.7 to 6.4 % in all halls. With equal rings and the border
-/// they were 11 to 13 %.
+/// doubling rings, and distances to the border of a block of cells, its errors were 4.7 to 6.4 % in all halls. With
+/// equal rings and such distances they were 11 to 13 %.
 #[test]
 fn rings_that_double_explain_table_1_better_than_equal_rings() {
     let ranked = &FIGURES.0.interpretations.ranked;

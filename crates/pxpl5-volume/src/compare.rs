@@ -244,8 +244,9 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns five views with the hyperbolic clip side by side: orthographic with 1 sample, jittered, orthographic
-    /// with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without pictures.
+    /// Returns five views with the hyperbolic clip side by side. They are orthographic with 1 sample, jittered,
+    /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
+    /// pictures.
     #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self

@@ -10,8 +10,8 @@
 //!   the motion, and the +z axis points towards the head. Both displays show the same scene at the position of the
 //!   volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
-//!   is the angle between two positions of a point: as drawn for the pose one latency ago, and its true position. For
-//!   the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
+//!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
+//!   For the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
 //! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
 //!   visual angle of this cell.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
@@ -121,8 +121,8 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits: half a turn until strobe 0, and a quarter turn until the plane
-    /// is reached. Returns `None` if the volume was not drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The plane of the display waits half a turn for strobe 0, and a
+    /// quarter turn until the screen reaches it. Returns `None` if the volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -331,8 +331,8 @@ impl<'a> HeadComparison<'a> {
     }
 }
 
-/// Returns the position of a point in a flat picture with focal length 1 that the head sees. x points to the right and
-/// y down. Returns `None` if the point is behind the head.
+/// Returns the position of a point in a flat picture that the head sees. The picture has focal length 1, with x to the
+/// right and y down. Returns `None` if the point is behind the head.
 fn direction(head: &Pose, point: DVec3) -> Option<DVec2> {
     let seen = head.view_of(point);
     (seen.z < -1e-6).then(|| DVec2::new(seen.x, -seen.y) / -seen.z)

@@ -51,7 +51,7 @@ impl Look {
         Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
     }
 
-    /// Returns the light of one turn that reaches the eye.
+    /// Returns the light that reaches the eye during one turn of the screen.
     ///
     /// # Errors
     ///

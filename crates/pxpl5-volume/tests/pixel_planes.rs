@@ -1,5 +1,5 @@
-//! Tests of slices on the renderers of Pixel-Planes 5: clocks of the program, both pixel arrays, agreement with the
-//! host's picture, and lower bounds of the times.
+//! Tests of slices on the renderers of Pixel-Planes 5. They cover clocks, both pixel arrays, agreement with the host's
+//! picture, and lower bounds of the times.
 
 use pxpl5_renderer::isa::Operand;
 use pxpl5_renderer::{BitSerial, CommandKind, EMPTY_PLANE, Lanes, Layout, PixelArray};

@@ -76,8 +76,8 @@ fn the_report_has_every_field_of_the_specification() {
     }
 }
 
-/// Checks the counts of 36 slices of 128 x 96 pixels: 4 bytes a pixel, half a byte packed, 4 x 3 tiles of 32 px in 9
-/// batches.
+/// Checks the counts of 36 slices of 128 x 96 pixels. A pixel takes 4 bytes, or half a byte packed. There are 4 x 3
+/// tiles of 32 px in 9 batches.
 #[test]
 fn counts_follow_from_the_display() {
     let report = drawn(&small()).report();
@@ -151,8 +151,8 @@ fn pictures_show_the_slices() {
     }
 }
 
-/// Checks that a sheet has rows of 22 thumbnails of 64 px, and that a tile map has as many white pixels as occupied
-/// tiles are counted.
+/// Checks that a sheet has rows of 22 thumbnails of 64 px. A tile map has as many white pixels as occupied tiles are
+/// counted.
 #[test]
 fn sheets_and_maps_show_everything() {
     let volume = drawn(&small());

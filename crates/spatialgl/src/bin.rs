@@ -145,8 +145,8 @@ impl Codes {
     }
 }
 
-/// Returns two booleans: the first is true if all of a primitive lies on the positive side of a plane, the second if
-/// any part of it does.
+/// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
+/// second is true if any part of it does.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
 /// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.

@@ -1,5 +1,5 @@
-//! Projections from the coordinates of a slice to its image. All projections leave points of the slice (s = 0) in
-//! place.
+//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself (s =
+//! 0).
 
 use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec4};

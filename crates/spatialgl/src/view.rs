@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// One slice: its position, the projection of the scene onto it, and the part of space that it represents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceView {
-    /// Matrix from the world to (u, v, s), all in pixels. u and v are the horizontal and vertical position in the
-    /// slice. s is the distance from the slice.
+    /// Matrix from the world to (u, v, s), all in pixels: horizontal position in the slice, vertical position, and
+    /// distance from the slice.
     pub view: DMat4,
     /// Matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
     pub projection: DMat4,

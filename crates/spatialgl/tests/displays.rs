@@ -105,8 +105,8 @@ fn a_flat_screen_hides_what_is_behind() {
     }
 }
 
-/// Checks that one recording of the Mig, a test scene of 417 triangles, can be shown on a swept screen, a stack and a
-/// flat screen.
+/// Checks that one recording can be shown on a swept screen, a stack of planes and a flat screen. The scene is the Mig,
+/// which has 417 triangles.
 #[test]
 fn a_scene_does_not_know_the_display() {
     let scene = builtin("mig").expect("built in");

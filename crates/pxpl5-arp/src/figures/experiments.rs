@@ -20,10 +20,10 @@ use tracking::motion::Walk;
 /// frames.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
-/// Settings and results of one walk of an experiment.
+/// Settings and results of one simulated walk of the viewer.
 #[derive(Clone, Debug)]
 pub struct NamedWalk {
-    /// Name of the walk in tables and documents.
+    /// Name of the viewer's walk in tables and documents.
     pub name: &'static str,
     pub settings: Settings,
     pub tally: WalkTally,
@@ -37,7 +37,7 @@ pub struct Fit {
     pub rules: Rules,
     /// Fitted side of a cell, in metres.
     pub cell_m: f64,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
 }
 
@@ -46,7 +46,7 @@ pub struct Fit {
 pub struct SlowRendererResult {
     /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
     /// Number of retraces at which an update was incomplete, for each memory.
     pub missed: Vec<u64>,

@@ -18,7 +18,8 @@ pub const RATE_FITTED: usize = 1;
 /// Cell sides to try, in tenths of a metre.
 const TENTHS: std::ops::RangeInclusive<u32> = 15..=40;
 
-/// Returns the updates per second of each memory on a walk at 1 m/s. Only the policy runs, and nothing is drawn.
+/// Returns the updates per second of each display memory for a viewer who walks at 1 m/s. Only the policy runs, and
+/// nothing is drawn.
 ///
 /// # Errors
 ///
@@ -34,7 +35,8 @@ pub fn policy_rates_hz(
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
 
-/// Returns the updates per second of each memory for a set of occupied cells. `eye` returns the position in each frame.
+/// Returns the updates per second of each display memory for a set of occupied cells. `eye` returns the position of the
+/// eye in each frame.
 pub(super) fn rates_hz(
     held: impl IntoIterator<Item = Cell>,
     eye: impl Fn(u64) -> DVec3,

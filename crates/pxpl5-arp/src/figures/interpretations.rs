@@ -62,7 +62,7 @@ impl Situation {
         }
     }
 
-    /// Returns the updates per second of each memory on a walk at 1 m/s.
+    /// Returns the updates per second of each display memory for a viewer who walks at 1 m/s.
     fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], ExperimentError> {
         let numbers = rules.numbers(cell_m);
         let rates = if self == Self::Gallery {
@@ -86,7 +86,7 @@ impl Situation {
 pub struct Trial {
     /// Side of a cell in metres. It applies to the default threshold.
     pub cell_m: f64,
-    /// Updates per second of memories 0 to 3.
+    /// Updates per second of display memories 0 to 3.
     pub rates_hz: [f64; 4],
 }
 
@@ -110,7 +110,7 @@ const COMPARED: [usize; 3] = [1, 2, 3];
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
     pub rules: Rules,
-    /// Hall and path.
+    /// Hall through which the viewer walks, and path of the viewer.
     pub situation: Situation,
     /// Results for every cell side that was tried.
     #[serde(skip)]
@@ -196,7 +196,7 @@ fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error over the given memories. The first of equal trials wins.
+/// Returns the trial with the smallest error over the given memories. If several are equal, returns the first one.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }

@@ -52,7 +52,7 @@ impl Rules {
         format!("q = {}, {rings}, {distance}, {cascade}", self.inner_rings)
     }
 
-    /// Returns the parameters of the policy with these rules and cells of side `cell_m`, in metres.
+    /// Returns the parameters of the policy with these rules. `cell_m` is the side of a cell in metres.
     #[must_use]
     pub fn numbers(&self, cell_m: f64) -> PriorityTiming {
         PriorityTiming {

@@ -1,5 +1,5 @@
-//! Pictures of a walk: unfolded cube faces, views, the memory shown at each pixel, tears, errors, a plan of cells, and
-//! updates.
+//! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears, errors, a plan of
+//! cells, and updates.
 
 mod colours;
 mod faces;
@@ -36,7 +36,7 @@ pub enum Picture {
     Drawing(String, String),
 }
 
-/// Number of frames of the depicted walk.
+/// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
 /// For each experiment: its name, the figures of the paper that it redraws, and the names of our pictures.

@@ -9,9 +9,9 @@ use std::fmt::Write as _;
 /// Near plane in metres. Edges nearer to the eye are clipped.
 const NEAR_M: f64 = 0.05;
 
-/// Draws the edges of all triangles without hidden-line removal.
+/// Draws the edges of all triangles. Edges behind a surface are also drawn.
 ///
-/// Edges of the scene are grey. Edges cut by the borders of cells with side `side_m` are red.
+/// Edges of the scene are grey. Edges that result from cuts at the borders of cells with side `side_m` are red.
 #[must_use]
 pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &Picture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);

@@ -82,7 +82,7 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     ]
 }
 
-/// Returns true if the closed volume of a slice contains a point of the axis, but does not contain a point beside the
+/// Returns true if the closed volume of a slice contains a point of the axis. It must not contain a point beside the
 /// axis and off the slice.
 fn has_axis(view: &SliceView) -> bool {
     let SliceVolume::Wedge(planes, _) = view.volume else { return false };

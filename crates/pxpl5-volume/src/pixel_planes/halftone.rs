@@ -8,8 +8,8 @@ use pxpl5_wire::Word;
 /// Number of bits of a threshold. It equals the number of bits of a channel.
 const THRESHOLD_BITS: u8 = 8;
 
-/// Returns the place of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice triangles
-/// do not change these bits. The thresholds are loaded once at start-up, so they cost no time per volume.
+/// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice
+/// triangles do not change these bits. The thresholds are loaded once at start-up, so they cost no time per volume.
 ///
 /// # Panics
 /// If the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of scratch.
@@ -18,8 +18,8 @@ pub fn threshold_field(layout: &Layout) -> Operand {
     scratch(layout).part(0, THRESHOLD_BITS)
 }
 
-/// Returns the place of a channel's bit after halftoning (0 red, 1 green, 2 blue). These bits follow the threshold in
-/// pixel memory.
+/// Returns the location of a channel's bit after halftoning (0 red, 1 green, 2 blue). These bits follow the threshold
+/// in pixel memory.
 ///
 /// # Panics
 /// The same as [`threshold_field`].
