@@ -1,8 +1,8 @@
-//! Measures the host time to look up 640 x 480 pixels with interpolation, in four display memories of 512 texels, on
+//! Measures the host time to compute 640 x 480 pixels with interpolation, from four display memories of 512 texels, on
 //! one thread.
 //!
-//! The goal is at most 8 ms. `a plain loop` is the same computation pixel by pixel. `reading the texels once` is the
-//! cost of memory: it reads all texels of the front face in all memories in order.
+//! The goal is at most 8 ms. `a plain loop` is the same computation pixel by pixel. `reading the texels once` measures
+//! memory access alone: it reads all texels of the front face in all memories in order.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use address_recalculation::{
@@ -11,7 +11,7 @@ use address_recalculation::{
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
-/// Returns four memories with stripes at alternating depths.
+/// Returns four memories with stripes of alternating depths.
 fn memories(config: &ArpConfig) -> Vec<FaceSet> {
     (0..config.timing.display_memories as u32).map(|memory| striped(config, memory)).collect()
 }

@@ -3,16 +3,16 @@
 use crate::face::{CubeFace, FaceGeometry, TexelAddress, longest};
 use crate::timing::ArpTiming;
 
-/// Intersection of a direction with a face, as components along the face's axes.
+/// Intersection of a direction with a face of the cube, as components of the direction along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FaceHit {
     /// The face that the direction hits.
     pub(crate) face: CubeFace,
-    /// Component along the axis of the face, greater than zero.
+    /// Component of the direction along the forward axis of the face. It is greater than zero.
     pub(crate) forward: i64,
-    /// Component to the right. Its magnitude is at most `forward`.
+    /// Component of the direction to the right. Its magnitude is at most `forward`.
     pub(crate) right: i64,
-    /// Component upwards. Its magnitude is at most `forward`.
+    /// Component of the direction upwards. Its magnitude is at most `forward`.
     pub(crate) up: i64,
 }
 
@@ -35,16 +35,17 @@ pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
     ///
     /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
-    /// corner, which is the mean of the other three.
+    /// corner. The mean of the other three texels replaces it.
     pub texels: [Option<TexelAddress>; 4],
-    /// Fractions to the right and downwards, in units of `2^-weight_bits`, from 0 to 1 inclusive.
+    /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
+    /// `2^-weight_bits`.
     pub fractions: [u32; 2],
-    /// True if a texel lies on another face.
+    /// True if one of the texels lies on another face.
     pub is_split: bool,
 }
 
 impl Footprint {
-    /// Returns true if two of the texels lie in one bank, which costs a second access.
+    /// Returns true if two of the texels lie in one memory bank, so that a second access is needed.
     #[must_use]
     pub fn has_conflict(&self) -> bool {
         let banks = self.texels.iter().flatten().fold([0; 4], |mut banks, texel| {
@@ -63,14 +64,14 @@ impl Footprint {
     }
 }
 
-/// The stages between the matrix and the memories: face selection, dividers and addresses.
+/// The stages of the pipeline between the matrix and the memories: face selection, dividers and addresses.
 #[derive(Clone, Copy, Debug)]
 pub struct AddressUnit {
     /// Size of the faces.
     pub geometry: FaceGeometry,
     /// Number of bits of a quotient.
     pub quotient_bits: u64,
-    /// Number of bits of a fraction. 0 selects the nearest texel.
+    /// Number of bits of a fraction. With 0, the pixel shows the nearest texel.
     pub weight_bits: u64,
 }
 
@@ -82,17 +83,18 @@ impl AddressUnit {
         Self { geometry, quotient_bits: timing.quotient_bits, weight_bits: timing.weight_bits }
     }
 
-    /// Returns (1 + side / forward) / 2 in `quotient_bits` bits, rounded down. The value 1 becomes all ones.
+    /// Returns (1 + side / forward) / 2 in `quotient_bits` bits, rounded down. The value 1 becomes a word of all ones.
     fn quotient(&self, side: i64, forward: i64) -> i64 {
         let dividend = ((forward + side) as u128) << self.quotient_bits;
         let largest = (1 << self.quotient_bits) - 1;
         ((dividend / (2 * forward) as u128) as i64).min(largest)
     }
 
-    /// Returns the position between the middles of texels, in units of `2^-quotient_bits`.
+    /// Returns a position along one axis of the face, relative to the middles of texels, in units of
+    /// `2^-quotient_bits`.
     ///
-    /// The position is guard + quotient * inner, minus half a texel for interpolation. A quotient rounded down stands
-    /// for the middle of its interval, so half of its last bit is added.
+    /// The position is guard + quotient * inner, minus half a texel for interpolation. A rounded quotient stands for
+    /// the middle of its interval, so half of its last bit is added.
     fn place(&self, quotient: i64) -> i64 {
         let half = if self.weight_bits == 0 { 0 } else { 1 << (self.quotient_bits - 1) };
         let inner = i64::from(self.geometry.inner());
@@ -107,7 +109,8 @@ impl AddressUnit {
         ((fraction + half) >> below) as u32
     }
 
-    /// Returns the footprint of a direction from [`crate::MatrixWords::turn`], or `None` for the zero vector.
+    /// Returns the texels and weights for a direction from [`crate::MatrixWords::turn`]. Returns `None` for the zero
+    /// vector.
     #[must_use]
     pub fn footprint(&self, direction: [i64; 3]) -> Option<Footprint> {
         let met = FaceHit::of(direction)?;
@@ -124,7 +127,7 @@ impl AddressUnit {
         Some(self.around(met.face, [column, row], fractions))
     }
 
-    /// Returns the footprint with the given upper left texel. Some of its texels may lie beyond the face's edges.
+    /// Returns the footprint with the given upper left texel. Some of its four texels can lie beyond the face's edges.
     pub(crate) fn around(&self, face: CubeFace, [column, row]: [i64; 2], fractions: [u32; 2]) -> Footprint {
         let places = [[column, row], [column + 1, row], [column, row + 1], [column + 1, row + 1]];
         let size = i64::from(self.geometry.texels);
@@ -132,7 +135,7 @@ impl AddressUnit {
         Footprint { texels: places.map(|place| self.texel_or_neighbour(face, place)), fractions, is_split }
     }
 
-    /// Returns the texel at a column and row of a face, which may lie beyond its edges.
+    /// Returns the texel at a column and row that can lie beyond the edges of a face.
     ///
     /// Beyond an edge, the result is the neighbouring face's texel in the same direction. Beyond a corner, the result
     /// is `None`.
@@ -146,7 +149,7 @@ impl AddressUnit {
         }
     }
 
-    /// Returns the direction of a texel's middle in integers, on the face or beside it.
+    /// Returns the direction of a texel's middle as integers. The texel can lie beside the face.
     fn middle(&self, face: CubeFace, place: [i64; 2]) -> [i64; 3] {
         let inner = i64::from(self.geometry.inner());
         let [u, v] = place.map(|n| 2 * (n - i64::from(self.geometry.guard)) + 1 - inner);
@@ -156,7 +159,7 @@ impl AddressUnit {
         [0, 1, 2].map(|i| inner * forward[i] + u * right[i] - v * up[i])
     }
 
-    /// Returns the texel that a direction in integers hits. The computation is exact.
+    /// Returns the texel that a direction, given as integers, hits. The computation is exact.
     fn nearest(&self, direction: [i64; 3]) -> Option<TexelAddress> {
         let met = FaceHit::of(direction)?;
         let inner = i64::from(self.geometry.inner());

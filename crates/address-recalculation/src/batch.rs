@@ -16,22 +16,23 @@ pub(crate) const BATCH: usize = 64;
 
 type Each<T> = [T; BATCH];
 
-/// Upper left texels and fractions of the footprints of a group of pixels.
+/// Upper left texel and fractions of the footprint of each pixel in a group. A footprint is the four texels around a
+/// position.
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
     /// Number of pixels in the group.
     pub(crate) count: usize,
-    /// Index of the upper left texel of each pixel. 0 for a footprint that leaves its face.
+    /// Index of the upper left texel of each pixel. It is 0 for a footprint with texels on other faces.
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,
-    /// Nonzero for a footprint that leaves its face. The address unit computes such footprints one by one.
+    /// Nonzero for a footprint with texels on other faces. The address unit computes such footprints one by one.
     leaves: Each<i32>,
     is_left: bool,
     met: Met,
 }
 
-/// Intermediate values: viewing vectors, rotated vectors, components along the face's axes, and positions.
+/// Intermediate values of a group: viewing vectors, rotated vectors, components along the face's axes, and positions.
 #[derive(Clone, Debug)]
 struct Met {
     vectors: [Each<i32>; 3],
@@ -61,17 +62,17 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// Returns the upper left texels of the footprints that stay on their face.
+    /// Returns the upper left texels of those footprints that lie on one face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }
 
-    /// Returns true if the footprint of a pixel leaves its face.
+    /// Returns true if the footprint of a pixel has texels on other faces.
     pub(crate) const fn leaves(&self, pixel: usize) -> bool {
         self.leaves[pixel] != 0
     }
 
-    /// Returns true if any footprint of the group leaves its face.
+    /// Returns true if any footprint of the group has texels on other faces.
     pub(crate) const fn is_left(&self) -> bool {
         self.is_left
     }
@@ -79,7 +80,8 @@ impl Batch {
 
 /// Computes the addresses of up to [`BATCH`] directions.
 ///
-/// Every step processes all lanes, so loops have a constant length. Unused lanes hold values of earlier groups.
+/// Every step processes all entries of the arrays, so loops have a constant length. Unused entries hold values of
+/// earlier groups.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
     batch.count = vectors[0].len().min(BATCH);
@@ -98,7 +100,8 @@ pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32];
     footprints(batch, unit);
 }
 
-/// Computes one component of all rotated directions, without rounding errors.
+/// Computes one component of all rotated directions, without rounding errors. `row` is the row of the matrix for this
+/// component.
 #[inline(always)]
 fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
     let [a, b, c] = row.map(f64::from);
@@ -107,7 +110,7 @@ fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
     }
 }
 
-/// Selects the face of each direction by the longest component. On ties, x precedes y, and y precedes z.
+/// Selects the face of each direction by its longest component. On ties, x precedes y, and y precedes z.
 #[inline(always)]
 fn meet(met: &mut Met) {
     let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
@@ -136,13 +139,14 @@ const fn select(condition: bool, yes: f64, no: f64) -> f64 {
 
 /// Returns the integer part of a number from 0 to 2^32.
 ///
-/// Adding 2^52 puts the integer into the lowest bits of the double. A cast would test each number separately.
+/// Adding 2^52 puts the integer into the lowest bits of the double. A cast would compare each number with the limits of
+/// the type.
 #[inline(always)]
 fn whole_part(number: f64) -> i32 {
     (number.floor() + 4_503_599_627_370_496.0).to_bits() as i32
 }
 
-/// Computes positions between the middles of texels, in units of `2^-quotient_bits`.
+/// Computes positions on the face relative to the middles of texels, in units of `2^-quotient_bits`.
 #[inline(always)]
 fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) {
     let q = unit.quotient_bits as u32;
@@ -178,9 +182,9 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
 }
 
-/// Interpolates the colours of all footprints of a group.
+/// Interpolates the four colours of each footprint in a group.
 ///
-/// `reach` is the distance in texels to the next row, or 0 without interpolation.
+/// `reach` is the distance in texels from a row to the next, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u32, out: &mut [u32]) {
     if weight_bits == 0 {
@@ -208,12 +212,12 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
     }
 }
 
-/// Largest number of weight bits for which two colour channels, 16 bits apart, share one product.
+/// Largest number of weight bits for which two colour channels, 16 bits apart, fit into one product.
 ///
 /// The reason is that 255 * 4^4 plus half a unit is below 2^16.
 const MAX_PACKED_WEIGHT_BITS: u32 = 4;
 
-/// Interpolates red and blue in one product, and green in another.
+/// Interpolates red and blue in one product, and green in another product.
 #[inline(always)]
 fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;
@@ -233,7 +237,7 @@ fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) 
     }
 }
 
-/// Interpolates red, green and blue separately.
+/// Interpolates red, green and blue in separate products.
 #[inline(always)]
 fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;

@@ -1,16 +1,17 @@
-//! Composition: selection of the nearest memory, and interpolation of four texels.
+//! Composition of a pixel: selection of the nearest memory, and interpolation of four texels.
 
 use crate::texel::{colour, nearness};
 use serde::{Deserialize, Serialize};
 
-/// Order of depth comparison and interpolation.
+/// Order of the two steps depth comparison and interpolation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompositionOrder {
-    /// For each texel, the nearest memory is selected first. Then the four texels are interpolated (assumed).
+    /// First, the nearest memory is selected for each texel. Then the four texels are interpolated (assumed).
     #[default]
     DepthFirst,
-    /// Each memory is interpolated first, including its depth. Then the nearest memory is selected.
+    /// First, the four texels of each memory are interpolated, including their depths. Then the nearest memory is
+    /// selected.
     InterpolationFirst,
 }
 
@@ -20,25 +21,25 @@ impl CompositionOrder {
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
 
-/// Rules by which texels of several memories become a pixel.
+/// Rules by which the texels of several memories give the colour of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Composition {
-    /// Order of depth comparison and interpolation.
+    /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
     /// Colour of empty texels without a background memory, 0x00RRGGBB.
     pub background: u32,
-    /// Number of bits of a fraction.
+    /// Number of bits of an interpolation fraction.
     pub weight_bits: u64,
 }
 
-/// Inputs of a pixel: four texels in each memory, their weights and the background.
+/// Inputs for the computation of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
     /// For each memory, the words of the upper left, upper right, lower left and lower right texel.
     pub(crate) memories: &'a [[u64; 4]],
     /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
-    /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner, replaced by the mean of the other
-    /// three.
+    /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner. The mean of the other three texels
+    /// replaces it.
     pub(crate) weights: [Option<u32>; 4],
 }
 
@@ -69,14 +70,14 @@ impl Composition {
         best.1
     }
 
-    /// Interpolates colours, rounded to nearest with halves up.
+    /// Interpolates four colours. The result is rounded to the nearest, and halves are rounded up.
     fn mix(&self, four: [u32; 4], weights: [Option<u32>; 4]) -> u32 {
         [16, 8, 0].iter().fold(0, |pixel, shift| {
             pixel | self.weighed(four.map(|colour| colour >> shift & 0xFF), weights, true) << shift
         })
     }
 
-    /// Interpolates depths, rounded down.
+    /// Interpolates the nearness of four texels. The result is rounded down.
     fn mixed_nearness(&self, four: [u32; 4], weights: [Option<u32>; 4]) -> u32 {
         self.weighed(four, weights, false)
     }
@@ -94,7 +95,7 @@ impl Composition {
     }
 }
 
-/// Returns the nearer of two texel words. The first one wins a tie.
+/// Returns the nearer of two texel words. At equal depth, this is the first word.
 #[inline(always)]
 pub(crate) const fn nearer(first: u64, second: u64) -> u64 {
     // Both words are below 2^56, so signed comparisons work. Vector units have signed comparisons.

@@ -14,21 +14,21 @@ use parameters::check;
 /// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArpConfig {
-    /// Word lengths, memories and clock.
+    /// Word lengths, memories and stage time of the pipeline.
     pub timing: ArpTiming,
     /// Timing of the video scan.
     pub scan: ScanTiming,
     /// Lens between the picture and the eye.
     pub lens: Lens,
-    /// Rule for the latch of the orientation: once per field, per line or per pixel.
+    /// Times at which the display reads the orientation: once per field, per line or per pixel.
     pub latch: Latch,
-    /// Order of depth comparison and interpolation.
+    /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
     /// Colour of empty texels, 0x00RRGGBB.
     pub background: u32,
-    /// True if a memory without depth, with its own port, holds a constant background.
+    /// True if there is a background memory: a memory without depth, with its own port.
     pub has_background_memory: bool,
-    /// Number of past fields that can be read, 1 to 1,000. An interlaced picture needs two.
+    /// Number of past fields that the display keeps for reading, 1 to 1,000. An interlaced picture needs two.
     pub fields_kept: u64,
 }
 
@@ -94,7 +94,7 @@ impl ArpConfig {
         Ok(AddressUnit::new(&self.timing).footprint(turned))
     }
 
-    /// Returns the scan, which computes the times of light and latch of each pixel.
+    /// Returns the scan, which computes when each pixel is displayed and when its orientation is read.
     ///
     /// # Errors
     ///
@@ -114,7 +114,7 @@ impl ArpConfig {
         TexelFormat::new(&self.timing)
     }
 
-    /// Returns the rules by which texels of several memories become a pixel.
+    /// Returns the rules by which the texels of several memories give the colour of a pixel.
     #[must_use]
     pub const fn composition(&self) -> Composition {
         Composition {

@@ -1,4 +1,4 @@
-//! The display on the ring: a port for each memory, an orientation register and a picture per eye.
+//! The display on the ring: a port for each memory, and for each eye an orientation register and a picture.
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;
@@ -19,12 +19,12 @@ use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 
-/// The memories and the orientation latch of one eye.
+/// The display memories and the orientation register of one eye.
 #[derive(Debug)]
 struct EyeBoards {
     memories: Vec<DisplayMemory>,
     latch: OrientationLatch,
-    /// Buffers shown in past fields, newest last.
+    /// Buffers that were shown in past fields. The newest field is last.
     scanned: VecDeque<(PeriodNumber, ShownBuffers)>,
 }
 
@@ -33,9 +33,10 @@ impl EyeBoards {
         ShownBuffers { memories: self.memories.iter().map(|memory| (memory.kind(), memory.shown())).collect() }
     }
 
-    /// Swaps all memories that are ready at a retrace. Returns each swapped memory with its new buffer.
+    /// Swaps the buffers of all memories that are ready at a retrace. Returns the index of each swapped memory with its
+    /// new buffer.
     ///
-    /// Memories of a set swap only if the whole set is ready.
+    /// Memories that must swap together do so only if all of them are ready.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
         // A memory that is ready for another set, or alone, does not count as ready for this set.
@@ -65,13 +66,14 @@ impl AddressRecalculationPipeline {
         &self.optics.config
     }
 
-    /// Returns the display memories of an eye, with the background memory last. Empty for an eye that does not exist.
+    /// Returns the display memories of an eye, with the background memory last. Returns an empty slice for an eye that
+    /// does not exist.
     #[must_use]
     pub fn memories(&self, eye: Eye) -> &[DisplayMemory] {
         self.eyes.get(eye.index()).map_or(&[], |boards| &boards.memories)
     }
 
-    /// Loads an orientation through the host's own port: the rows of the matrix from head axes to world axes.
+    /// Loads an orientation through the host's own port. `rows` is the matrix from head axes to world axes.
     ///
     /// # Errors
     ///
@@ -81,21 +83,22 @@ impl AddressRecalculationPipeline {
         self.eyes.get_mut(eye.index()).map_or(Ok(()), |boards| boards.latch.load(rows, now))
     }
 
-    /// Returns the matrix used for a pixel of a past field, if the field is still held and scans the pixel.
+    /// Returns the matrix with which a pixel of a past field was computed. Returns `None` if the display no longer
+    /// stores the field, or if the field does not scan the pixel.
     #[must_use]
     pub fn latched(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<MatrixWords> {
         self.field(eye.index(), field)?.matrix(x, y)
     }
 
-    /// Returns the texels and weights used for a pixel of a past field.
+    /// Returns the texels and weights from which a pixel of a past field was computed.
     ///
-    /// Returns `None` if the field is no longer held or does not scan the pixel.
+    /// Returns `None` if the display no longer stores the field, or if the field does not scan the pixel.
     #[must_use]
     pub fn footprint(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<Footprint> {
         self.field(eye.index(), field)?.footprint(x, y)
     }
 
-    /// Returns the extra memory accesses of a past field, beyond one access per pixel and memory.
+    /// Returns the number of extra memory accesses for a past field, beyond one access per pixel and memory.
     #[must_use]
     pub fn look_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookStats> {
         let mut frame = self.empty_frame();
@@ -188,7 +191,7 @@ impl AddressRecalculationPipeline {
     }
 }
 
-/// Name on the command line.
+/// Name of the display on the command line.
 const NAME: &str = "arp";
 
 impl Display for AddressRecalculationPipeline {
@@ -290,7 +293,7 @@ impl DisplayConfig for ArpConfig {
         vec![("arp", &mut self.timing), ("arp_scan", &mut self.scan)]
     }
 
-    /// Returns the number of ports: one for each memory of each eye.
+    /// Returns the number of ring ports: one for each memory of each eye.
     fn ports(&self, pictures: usize) -> usize {
         pictures.clamp(1, Eye::BOTH.len()) * self.ports_of_an_eye()
     }

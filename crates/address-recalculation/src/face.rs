@@ -2,23 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A direction or a row of a matrix: x points right, y up, z towards the viewer.
+/// A direction or a row of a matrix. x points to the right, y up, and z backwards, opposite to the initial view.
 pub type Vector = [f64; 3];
 
-/// A face of the cube, named by the axis it lies on.
+/// A face of the cube around the eye, named by the axis that it lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum CubeFace {
-    /// To the right of a head in its initial orientation.
+    /// Face to the right of a head in its initial orientation.
     PosX,
-    /// To the left of a head in its initial orientation.
+    /// Face to the left of a head in its initial orientation.
     NegX,
-    /// Above the head.
+    /// Face above a head in its initial orientation.
     PosY,
-    /// Below the head.
+    /// Face below a head in its initial orientation.
     NegY,
-    /// Behind the head.
+    /// Face behind a head in its initial orientation.
     PosZ,
-    /// In front of a head in its initial orientation.
+    /// Face in front of a head in its initial orientation.
     NegZ,
 }
 
@@ -26,7 +26,7 @@ impl CubeFace {
     /// All faces in the order of their indices.
     pub const ALL: [Self; 6] = [Self::PosX, Self::NegX, Self::PosY, Self::NegY, Self::PosZ, Self::NegZ];
 
-    /// Returns the index: 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
+    /// Returns the index of the face: 0 for [`CubeFace::PosX`] to 5 for [`CubeFace::NegZ`].
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
@@ -55,7 +55,8 @@ impl CubeFace {
         }
     }
 
-    /// Returns the axis from the face's middle to its right edge, seen from inside: forward x up.
+    /// Returns the axis from the face's middle to its right edge, seen from inside the cube: the cross product of
+    /// forward and up.
     #[must_use]
     pub const fn right(self) -> [i64; 3] {
         let f = self.forward();
@@ -76,14 +77,14 @@ impl CubeFace {
         Some(Self::on(axis, direction[axis] < 0.0))
     }
 
-    /// Returns the face on an axis (0 to 2), on its negative or positive side.
+    /// Returns the face on an axis (0 to 2), on the negative or positive side of the eye.
     #[must_use]
     pub(crate) const fn on(axis: usize, is_negative: bool) -> Self {
         Self::ALL[2 * axis + is_negative as usize]
     }
 }
 
-/// Returns the index of the longest of three lengths. The first one wins a tie.
+/// Returns the index of the longest of three lengths. If several are equal, returns the first one.
 pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     if x >= y && x >= z {
         0
@@ -99,7 +100,7 @@ fn along(vector: Vector, axis: [i64; 3]) -> f64 {
     (0..3).map(|i| vector[i] * axis[i] as f64).sum()
 }
 
-/// Position of a texel in the six faces of a buffer.
+/// Face, column and row of a texel in a buffer of six faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TexelAddress {
     pub face: CubeFace,
@@ -116,42 +117,44 @@ impl TexelAddress {
         self.column % 2 + 2 * (self.row % 2)
     }
 
-    /// Returns the word index within the face's part of the bank, for faces of `face_texels` texels.
+    /// Returns the index of the word that holds the texel, counted within the face's part of the bank. A face has
+    /// `face_texels` texels along an edge.
     #[must_use]
     pub const fn word(self, face_texels: u32) -> u32 {
         self.row / 2 * (face_texels / 2) + self.column / 2
     }
 
-    /// Returns the index in a buffer that stores the texels by face and row.
+    /// Returns the index of the texel in a buffer that stores all texels by face and row.
     #[must_use]
     pub const fn index(self, face_texels: u32) -> usize {
         ((self.face as u32 * face_texels + self.row) * face_texels + self.column) as usize
     }
 }
 
-/// Size of a face and of its guard, which define the directions of its texels.
+/// Number of texels of a face, with and without guard texels. These numbers define the direction of each texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaceGeometry {
     /// Texels along an edge, including guard texels.
     pub texels: u32,
-    /// Guard texels on each side.
+    /// Number of guard texels on each side of the face. They repeat the content of the neighbouring face.
     pub guard: u32,
 }
 
 impl FaceGeometry {
-    /// Returns the number of texels along an edge without guard texels. They cover 90 degrees.
+    /// Returns the number of texels along an edge without guard texels. These texels cover 90 degrees.
     #[must_use]
     pub const fn inner(&self) -> u32 {
         self.texels - 2 * self.guard
     }
 
-    /// Returns the tangent of half the angle with which a renderer draws a face: texels / inner.
+    /// Returns the tangent of half the viewing angle with which a renderer draws a face: texels / inner.
     #[must_use]
     pub fn tangent(&self) -> f64 {
         f64::from(self.texels) / f64::from(self.inner())
     }
 
-    /// Returns the face that a direction hits, and the position there from -1 to 1 to the right and downwards.
+    /// Returns the face that a direction hits, and the position on this face. The position runs from -1 to 1 to the
+    /// right and downwards.
     ///
     /// Returns `None` for the zero vector.
     #[must_use]
@@ -163,7 +166,7 @@ impl FaceGeometry {
         Some((face, [right, down]))
     }
 
-    /// Returns the texel that a direction hits, which is never a guard texel. `None` for the zero vector.
+    /// Returns the texel that a direction hits. It is never a guard texel. Returns `None` for the zero vector.
     #[must_use]
     pub fn texel(&self, direction: Vector) -> Option<TexelAddress> {
         let (face, place) = self.place(direction)?;
@@ -172,17 +175,19 @@ impl FaceGeometry {
         Some(TexelAddress { face, column, row })
     }
 
-    /// Returns the position of a direction between the middles of texels, or `None` for the zero vector.
+    /// Returns the face that a direction hits, and the position relative to the middles of its texels. Returns `None`
+    /// for the zero vector.
     ///
-    /// The integer parts are column and row of the upper left texel. The fractions lead towards its neighbours.
+    /// The integer parts of the position are column and row of the upper left texel. The fractions are the distances
+    /// from this texel to the right and downwards.
     #[must_use]
     pub fn between_texels(&self, direction: Vector) -> Option<(CubeFace, [f64; 2])> {
         let (face, place) = self.place(direction)?;
         Some((face, place.map(|p| f64::from(self.guard) + (p + 1.0) / 2.0 * f64::from(self.inner()) - 0.5)))
     }
 
-    /// Returns the direction of a texel's middle, not of unit length. Directions of guard texels hit a neighbouring
-    /// face.
+    /// Returns the direction of a texel's middle. The vector does not have unit length. Directions of guard texels hit
+    /// a neighbouring face.
     #[must_use]
     pub fn direction(&self, texel: TexelAddress) -> Vector {
         let inner = f64::from(self.inner());
@@ -194,7 +199,7 @@ impl FaceGeometry {
         [0, 1, 2].map(|i| forward[i] as f64 + u * right[i] as f64 - v * up[i] as f64)
     }
 
-    /// Returns the solid angle of a texel in steradians. All texels except guard texels cover 4 pi together.
+    /// Returns the solid angle of a texel in steradians. All texels together, except guard texels, cover 4 pi.
     #[must_use]
     pub fn solid_angle(&self, texel: TexelAddress) -> f64 {
         let edge =
@@ -205,7 +210,8 @@ impl FaceGeometry {
     }
 }
 
-/// Returns the solid angle of the rectangle from the middle of a face to a position on it.
+/// Returns the solid angle of a rectangle on a face. One corner is the middle of the face, and the opposite corner is
+/// (x, y).
 fn corner_angle(x: f64, y: f64) -> f64 {
     libm::atan2(x * y, libm::sqrt(x * x + y * y + 1.0))
 }

@@ -1,4 +1,4 @@
-//! A scanned field, whose pixels are computed when it is read.
+//! A scanned field. Its pixels are computed only when it is read.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
@@ -36,7 +36,7 @@ pub(crate) struct ShownBuffers {
     pub(crate) memories: Vec<(MemoryKind, Arc<Regions>)>,
 }
 
-/// A run of pixels in a line that share one orientation.
+/// Consecutive pixels of a line that share one orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
     x: u32,
@@ -55,13 +55,13 @@ pub(crate) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Returns the matrix used for a pixel, or `None` if the field does not scan it.
+    /// Returns the matrix with which a pixel is computed, or `None` if the field does not scan the pixel.
     pub(crate) fn matrix(&self, x: u32, y: u32) -> Option<MatrixWords> {
         let latch = self.optics.config.latch;
         Some(self.latch.at(self.optics.scan.latches(latch, x, y, self.number)?))
     }
 
-    /// Returns the texels used for a pixel, or `None` if the field does not scan it.
+    /// Returns the texels from which a pixel is computed, or `None` if the field does not scan the pixel.
     pub(crate) fn footprint(&self, x: u32, y: u32) -> Option<Footprint> {
         let turned = self.matrix(x, y)?.turn(self.optics.table().entry(x, y));
         AddressUnit::new(&self.optics.config.timing).footprint(turned)
@@ -93,7 +93,7 @@ impl Field<'_> {
         run.y as usize * self.optics.scan.width() as usize + run.x as usize
     }
 
-    /// Returns a flag for each region of the faces: true if a pixel of the field reads it.
+    /// Returns for each region of the faces true if a pixel of the field reads it.
     fn wanted(&self, runs: &[Run]) -> Vec<bool> {
         let grid = region_grid(self.optics.config.timing.face_texels as u32);
         let mut wanted = vec![false; grid.regions() as usize];
@@ -104,7 +104,7 @@ impl Field<'_> {
         wanted
     }
 
-    /// Returns a line as runs, split where the orientation changes.
+    /// Divides a line into parts with one orientation each.
     fn runs(&self, y: u32) -> Vec<Run> {
         let width = self.optics.scan.width();
         let whole = self.matrix(0, y).map(|matrix| Run { x: 0, y, count: width, matrix });

@@ -6,7 +6,7 @@ use std::io::BufRead;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Widest angle of a flat picture or a radial lens in degrees, as in the other pipelines.
+/// Widest angle of a flat picture or a radial lens, in degrees. Other pipelines have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
 /// The lens between the picture and the eye.
@@ -15,29 +15,30 @@ pub enum Lens {
     /// No lens: the pixels lie on a plane.
     #[default]
     Flat,
-    /// A radial polynomial that scales the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
+    /// A radial polynomial that multiplies the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
     ///
-    /// rho is 1 at the edges of the middle line.
+    /// rho is 1 at the left and right ends of the middle line.
     Radial {
-        /// Coefficient of the second power.
+        /// Coefficient of rho^2.
         k1: f64,
-        /// Coefficient of the fourth power.
+        /// Coefficient of rho^4.
         k2: f64,
     },
-    /// A lens whose angle is proportional to the distance from the middle. Pictures can be up to 360 degrees wide.
+    /// A lens for which the viewing angle is proportional to the distance from the middle. Pictures can be up to 360
+    /// degrees wide.
     Equidistant,
     /// Viewing vectors from a file, in row order (see [`Lens::read`]).
     Table(Arc<[Vector]>),
 }
 
-/// Size and angle of a picture.
+/// Size and viewing angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picture {
     /// Number of pixels in a line.
     pub width: u32,
     /// Number of lines in a frame.
     pub height: u32,
-    /// Angle between the left and the right edge without a lens, in degrees.
+    /// Angle between the left and the right edge if there is no lens, in degrees.
     pub horizontal_deg: f64,
 }
 
@@ -52,7 +53,8 @@ impl Picture {
         libm::tan(self.horizontal_deg.to_radians() / 2.0)
     }
 
-    /// Returns the squared distance of a pixel from the middle, 1 at the edges of the middle line.
+    /// Returns the squared distance of a pixel from the middle. The unit is the distance of the left and right ends of
+    /// the middle line.
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
         let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down
@@ -62,7 +64,8 @@ impl Picture {
 impl FromStr for Lens {
     type Err = ArpError;
 
-    /// Parses `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. [`Lens::check`] decides if a lens suits a picture.
+    /// Parses `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. Only [`Lens::check`] tests if a lens suits a
+    /// picture.
     fn from_str(text: &str) -> Result<Self, ArpError> {
         let wrong = || ArpError::Lens { expected: Self::FORMS.to_owned(), found: excerpt(text) };
         let mut parts = text.split(':');
@@ -80,10 +83,10 @@ impl FromStr for Lens {
 }
 
 impl Lens {
-    /// The text forms of a lens.
+    /// The forms in which a lens can be written as text.
     pub const FORMS: &str = "flat, equidistant, radial:K1 or radial:K1:K2";
 
-    /// Checks that no two pixels use the same point of the lens, and that the angle is possible.
+    /// Checks that no two pixels use the same point of the lens, and that the lens can have the picture's angle.
     ///
     /// # Errors
     ///
@@ -102,7 +105,7 @@ impl Lens {
         }
     }
 
-    /// Returns the viewing vector of a pixel in head axes, not of unit length.
+    /// Returns the viewing vector of a pixel in head axes. The vector does not have unit length.
     ///
     /// x points right and y up. The head looks along -z.
     #[must_use]
@@ -194,7 +197,8 @@ fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
     }
 }
 
-/// Checks that the slope of rho (1 + k1 rho^2 + k2 rho^4) is positive up to the corner of the picture.
+/// Checks that the lens does not fold the picture. The slope of rho (1 + k1 rho^2 + k2 rho^4) must be positive up to
+/// the corner of the picture.
 fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
     let slope = |square: f64| 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square;
     let turn = -3.0 * k1 / (10.0 * k2);
@@ -219,8 +223,8 @@ fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
     [sine * right / distance, -sine * down / distance, -libm::cos(angle)]
 }
 
-/// Table of viewing vectors in hardware words. Each pixel has a unit vector in signed words, with the largest word for
-/// 1.
+/// Table of viewing vectors in hardware words. Each pixel has a unit vector in signed words, and the largest word
+/// represents 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LensTable {
     width: u32,
@@ -240,7 +244,7 @@ impl LensTable {
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
-    /// Creates the table of a lens that has already been checked.
+    /// Creates the table of viewing vectors for a lens that has already been checked.
     pub(crate) fn of_checked(lens: &Lens, picture: &Picture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
@@ -266,7 +270,7 @@ impl LensTable {
         self.height
     }
 
-    /// Returns the words of a pixel.
+    /// Returns the three words of a pixel's viewing vector.
     ///
     /// # Panics
     ///
@@ -277,20 +281,21 @@ impl LensTable {
         [0, 1, 2].map(|axis| self.words[axis][place])
     }
 
-    /// Returns the words of a run of pixels, by axis.
+    /// Returns the words of the viewing vectors of consecutive pixels, one slice for each axis.
     pub(crate) fn run(&self, first: usize, count: usize) -> [&[i32]; 3] {
         [0, 1, 2].map(|axis| &self.words[axis][first..first + count])
     }
 }
 
-/// Normalizes a vector and converts it to signed words of `bits` bits, rounded to even.
+/// Normalizes a vector and converts it to signed words of `bits` bits. Halves are rounded to even.
 #[must_use]
 pub(crate) fn unit_words(vector: Vector, bits: u64) -> [i32; 3] {
     let length = libm::sqrt(vector.iter().map(|component| component * component).sum());
     vector.map(|component| signed_word(component / length, bits))
 }
 
-/// Converts a number from -1 to 1 to a signed word, with the largest word for 1, rounded to even.
+/// Converts a number from -1 to 1 to a signed word of `bits` bits. The largest word represents 1, and halves are
+/// rounded to even.
 pub(crate) fn signed_word(value: f64, bits: u64) -> i32 {
     let largest = f64::from((1_i32 << (bits - 1)) - 1);
     (value * largest).round_ties_even().clamp(-largest, largest) as i32

@@ -1,9 +1,10 @@
-//! The fast model: it processes groups of pixels and gives the same bits as the reference model.
+//! The fast model of pixel computation. It processes groups of pixels and gives the same bits as the reference model.
 //!
-//! Depths of a texel are compared once, when a pixel first needs the texel ([`Composed`]). A picture reads each texel
-//! several times. Addresses and weights are computed for a group of pixels together ([`crate::batch`]).
+//! A picture reads each texel several times. The depths of a texel in all memories are compared only once, when a pixel
+//! first needs the texel ([`Composed`]). Addresses and weights are computed for a group of pixels together
+//! ([`crate::batch`]).
 //!
-//! The address unit handles wider words, and footprints that leave their face, one by one.
+//! The address unit handles two cases pixel by pixel: wider words, and pixels whose four texels do not lie on one face.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::batch::{BATCH, Batch, addresses, mixed};
@@ -16,12 +17,12 @@ use crate::texel::{FaceSet, nearness};
 use multiversion::multiversion;
 use std::cell::Cell;
 
-/// Extra memory accesses of a picture, beyond one access per pixel and memory.
+/// Counts of extra memory accesses for a picture, beyond one access per pixel and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LookStats {
-    /// Number of footprints with a texel on another face.
+    /// Number of pixels whose footprint (its four texels) has a texel on another face.
     pub split: u64,
-    /// Number of footprints with two texels in one bank, which need a second access.
+    /// Number of pixels whose footprint has two texels in one bank and therefore needs a second access.
     pub conflicts: u64,
 }
 
@@ -38,15 +39,15 @@ impl LookStats {
     }
 }
 
-/// Smallest number of pixels for which the group computation is used.
+/// Smallest number of pixels for which the computation in groups is used.
 const MIN_GROUP_PIXELS: usize = 4;
 
-/// Computes which texels pixels read.
+/// The part of the fast model that finds the texels of each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addressing<'a> {
     table: &'a LensTable,
     unit: AddressUnit,
-    /// True if doubles are exact for these word lengths.
+    /// True if doubles represent all intermediate values exactly for these word lengths.
     is_exact: bool,
 }
 
@@ -62,10 +63,11 @@ impl<'a> Addressing<'a> {
         self.unit.footprint(matrix.turn(vector))
     }
 
-    /// Computes the footprints of up to [`BATCH`] pixels, and returns true.
+    /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
+    /// true.
     ///
-    /// Returns false without computing anything if the words are too wide, or if there are so few pixels that single
-    /// computation is faster.
+    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that
+    /// computing them one by one is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
@@ -74,7 +76,7 @@ impl<'a> Addressing<'a> {
         is_worth_it
     }
 
-    /// Marks the regions of 128 x 128 texels that a run of pixels reads, in the order of [`crate::region_grid`].
+    /// Marks the regions of 128 x 128 texels that consecutive pixels read, in the order of [`crate::region_grid`].
     pub(crate) fn mark(&self, first: usize, count: usize, matrix: &MatrixWords, touched: &mut [bool]) {
         let vectors = self.table.run(first, count);
         let mut batch = Batch::new();
@@ -112,7 +114,7 @@ impl<'a> Addressing<'a> {
     }
 }
 
-/// Computes pixels from memories while the visible buffers stay the same.
+/// The fast model, which computes pixels from memories while their visible buffers stay the same.
 #[derive(Clone, Debug)]
 pub struct Lookup<'a> {
     addressing: Addressing<'a>,
@@ -124,7 +126,8 @@ pub struct Lookup<'a> {
 }
 
 impl<'a> Lookup<'a> {
-    /// Creates a lookup in the visible faces of all display memories, and of the background memory if there is one.
+    /// Creates a lookup of pixels in the visible faces of all display memories, and of the background memory if there
+    /// is one.
     ///
     /// # Panics
     ///
@@ -149,11 +152,11 @@ impl<'a> Lookup<'a> {
         }
     }
 
-    /// Computes consecutive pixels, in the order of lines, for one orientation. Colours are 0x00RRGGBB.
+    /// Computes consecutive pixels, in row order, for one orientation. Colours are 0x00RRGGBB.
     ///
     /// # Panics
     ///
-    /// Panics if the run exceeds the table.
+    /// Panics if the pixels exceed the table of viewing vectors.
     pub fn run(&mut self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
         let mut stats = LookStats::default();
         let vectors = self.addressing.table.run(first, out.len());
@@ -165,8 +168,8 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Finds the memory that wins the texel with the largest weight, for each pixel. `None` if all memories are empty
-    /// there.
+    /// Finds for each pixel the memory that is shown at its texel with the largest weight. A pixel gets `None` if all
+    /// memories are empty there.
     ///
     /// # Panics
     ///
@@ -211,7 +214,7 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Computes a single pixel from its footprint.
+    /// Computes a single pixel from its footprint, the four texels with their weights.
     fn pixel(&self, footprint: &Footprint) -> u32 {
         let words = |faces: &FaceSet| footprint.texels.map(|texel| texel.map_or(0, |texel| word(faces, texel)));
         let memories: Vec<[u64; 4]> = self.memories.iter().map(|faces| words(faces)).collect();
@@ -237,7 +240,7 @@ impl<'a> Lookup<'a> {
         mixed(&self.composed.colours, &self.batch, reach, unit.weight_bits as u32, out);
     }
 
-    /// Composes a piece unless this was already done.
+    /// Selects the nearest memory for each texel of a group of [`PIECE`] texels, unless this was already done.
     fn compose(&mut self, piece: usize) {
         if std::mem::replace(&mut self.composed.is_done[piece], true) {
             return;
@@ -250,16 +253,16 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// Number of texels composed at once. It divides 128.
+/// Number of consecutive texels for which the nearest memory is selected at once. It divides 128.
 const PIECE: usize = 32;
 
-/// Composition of all memories for each texel, computed on demand.
+/// For each texel, the colour of the nearest memory, computed when a pixel first needs it.
 ///
-/// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reader.
+/// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reading pixel.
 #[derive(Clone, Debug)]
 struct Composed {
     colours: Vec<u32>,
-    /// For each piece, true if its texels and the following one are composed.
+    /// For each group of [`PIECE`] texels, true if its texels and the following texel are computed.
     is_done: Vec<bool>,
 }
 
@@ -269,7 +272,7 @@ impl Composed {
         Self { colours: vec![0; all], is_done: vec![false; all.div_ceil(PIECE)] }
     }
 
-    /// Reuses the buffer of the previous lookup of this thread, if the size matches. This avoids new page faults on the
+    /// Returns the buffer of this thread's previous lookup if the size matches. Reuse avoids new page faults on the
     /// host.
     fn spare(texels: u32) -> Self {
         let all = 6 * (texels * texels) as usize;
@@ -284,7 +287,7 @@ impl Composed {
 }
 
 thread_local! {
-    /// Buffer for the next lookup: 4 bytes per texel, 6 MB for faces of 512 texels.
+    /// Buffer kept for the next lookup: 4 bytes per texel, 6 MB for faces of 512 texels.
     static SPARE: Cell<Option<Composed>> = const { Cell::new(None) };
 }
 
@@ -299,7 +302,8 @@ impl Drop for Lookup<'_> {
     }
 }
 
-/// Composes a piece and the following texel: the nearest of all memories, or the background if all are empty.
+/// Computes a group of texels and the following texel. Each is the texel of the nearest memory, or the background if
+/// all memories are empty.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
     let piece = |words: &[u64]| words[start..].first_chunk::<PIECE>().copied().unwrap_or([0; PIECE]);

@@ -14,14 +14,14 @@ const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 /// Number of words in a message of pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
-/// A region that has arrived. Its pixels are computed when it is read.
+/// A region that has arrived. Its texels are computed only when it is read.
 #[derive(Debug)]
 pub(crate) struct StoredRegion {
     source: Arc<dyn PixelSource>,
     words: OnceLock<Arc<[Word]>>,
 }
 
-/// The valid regions of a buffer. All others are empty.
+/// The regions of a buffer that have arrived in the current update. All other regions are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
 /// Properties of a memory: size of its faces, format of its texels, and presence of depth.
@@ -29,18 +29,19 @@ pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
     pub(crate) format: TexelFormat,
-    /// False for the background memory, which lies behind all other memories and covers empty texels.
+    /// True if the memory stores depth. The background memory does not: it lies behind all other memories and covers
+    /// empty texels.
     pub(crate) has_depth: bool,
 }
 
 impl MemoryKind {
-    /// Returns the number of messages per region: 16 with colours, and 16 more if depths need their own words.
+    /// Returns the number of messages per region: 16 for colours, and 16 more if depths need their own words.
     fn parts(self) -> u32 {
         let words = if self.has_depth { self.format.words() } else { 1 };
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Writes the wanted regions of a buffer into faces.
+    /// Writes the selected regions of a buffer into faces.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {
             let words = region.words.get_or_init(|| region.source.pixels());
@@ -54,7 +55,7 @@ impl MemoryKind {
         }
     }
 
-    /// Writes one row of a region. Missing words of the source leave texels empty.
+    /// Writes one row of a region. Texels for which the source has no words stay empty.
     fn draw_row(self, words: &[Word], start: usize, first: TexelAddress, faces: &mut FaceSet) {
         let row = start..start + REGION_SIZE as usize;
         let Some(low) = words.get(row.clone()) else { return };
@@ -72,7 +73,7 @@ impl MemoryKind {
     }
 }
 
-/// A region of which some messages have arrived.
+/// A region of which some messages have arrived, but not all.
 #[derive(Clone, Debug)]
 struct Arriving {
     pixels: RegionPixels,
@@ -82,18 +83,18 @@ struct Arriving {
 
 #[derive(Clone, Debug, Default)]
 struct Buffer {
-    /// Regions that were announced and are not yet complete.
+    /// Regions that an update announced and that are not yet complete.
     missing: BTreeSet<u16>,
     arriving: BTreeMap<u16, Arriving>,
     valid: Arc<Regions>,
 }
 
-/// A request to show a buffer.
+/// A request to make a buffer visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct SwapRequest {
     asked_at: Time,
     buffer: u8,
-    /// Bit mask of the memories that must swap at the same retrace. 0 if this memory swaps alone.
+    /// Bit mask of the memories that must swap at the same retrace. It is 0 if this memory swaps alone.
     together: u8,
 }
 
@@ -104,13 +105,14 @@ pub struct MemoryStats {
     pub regions: u64,
     /// Number of updates that were shown.
     pub swaps: u64,
-    /// Number of retraces at which a requested update was incomplete, so that the previous one stayed visible.
+    /// Number of retraces at which a requested update was incomplete and the previous update stayed visible.
     pub missed: u64,
-    /// Total delay of late updates, each from the first missed retrace to the retrace that showed it.
+    /// Total delay of late updates. Each delay lasts from the first missed retrace to the retrace at which the update
+    /// is shown.
     pub lateness: Span,
 }
 
-/// A double-buffered cube of faces with depth.
+/// A display memory: the six faces of a cube with depth, in two buffers.
 ///
 /// An update begins with a map of the regions that will arrive. It becomes visible at the first requested retrace at
 /// which all regions are present.
@@ -124,11 +126,11 @@ pub struct DisplayMemory {
     stats: MemoryStats,
 }
 
-/// Effect of a message of pixels.
+/// Effect of a message that contains pixels.
 pub(crate) enum PixelReceipt {
-    /// The message completed a region. The value is the arrival of the region's first message.
+    /// The message completed a region. The value is the time at which the region's first message arrived.
     Region(Time),
-    /// The message is a further part of an incomplete region.
+    /// The message belongs to a region that is still incomplete.
     Part,
 }
 
@@ -144,7 +146,7 @@ impl DisplayMemory {
         &self.stats
     }
 
-    /// Returns the visible buffer, 0 or 1.
+    /// Returns the index of the visible buffer, 0 or 1.
     #[must_use]
     pub const fn shown_buffer(&self) -> u8 {
         self.shown
@@ -158,7 +160,7 @@ impl DisplayMemory {
         2 * 6 * u64::from(self.kind.face_texels).pow(2) * bits / 8
     }
 
-    /// Returns the six visible faces with all regions computed.
+    /// Returns the six visible faces, with the texels of all regions computed.
     #[must_use]
     pub fn shown_faces(&self) -> FaceSet {
         let wanted = vec![true; region_grid(self.kind.face_texels).regions() as usize];
@@ -176,7 +178,7 @@ impl DisplayMemory {
         Arc::clone(&self.buffers[usize::from(self.shown)].valid)
     }
 
-    /// Begins an update. All regions of the buffer are empty until they arrive.
+    /// Begins an update of a buffer. All its regions are empty until they arrive.
     pub(crate) fn begin(&mut self, buffer: u8, regions: Vec<u16>) -> Result<(), &'static str> {
         if buffer == self.shown {
             return Err("an update of the buffer that is shown");
@@ -187,12 +189,12 @@ impl DisplayMemory {
         Ok(())
     }
 
-    /// Requests a buffer. It becomes visible at the next retrace at which it is complete.
+    /// Requests to show a buffer. The buffer becomes visible at the next retrace at which it is complete.
     pub(crate) fn ask(&mut self, buffer: u8, together: u8, now: Time) {
         self.request = Some(SwapRequest { asked_at: now, buffer, together });
     }
 
-    /// Accepts a message of pixels.
+    /// Accepts a message that contains pixels of a region.
     pub(crate) fn receive(&mut self, pixels: RegionPixels, now: Time) -> Result<PixelReceipt, &'static str> {
         let target = pixels.target;
         let region = target.region.0;
@@ -236,15 +238,15 @@ impl DisplayMemory {
         arriving.first_part_at
     }
 
-    /// Returns the set of memories that must swap with this one, if a request precedes this retrace and its update is
-    /// complete.
+    /// Returns the bit mask of the memories that must swap together with this one. Returns `None` if no request
+    /// precedes this retrace, or if the requested update is incomplete.
     pub(crate) fn is_ready(&self, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         self.buffers[usize::from(request.buffer)].missing.is_empty().then_some(request.together)
     }
 
-    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns it. Otherwise counts a missed
-    /// retrace.
+    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns this buffer. Otherwise counts a
+    /// missed retrace.
     pub(crate) fn retrace(&mut self, may_swap: bool, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         // Remember since when the update is late.

@@ -1,11 +1,11 @@
-//! The register of the head's orientation, and its checks.
+//! The register for the head's orientation, and the checks of matrices.
 
 use crate::error::ArpError;
 use crate::face::Vector;
 use crate::lens::signed_word;
 use pxpl5_sim::Time;
 
-/// Largest deviation of products of rows from those of a rotation matrix.
+/// Largest accepted deviation from a rotation matrix, measured in the scalar products of the rows.
 const TOLERANCE: f64 = 1e-3;
 
 /// A checked rotation from head axes to world axes. The columns of the matrix are the axes of the head.
@@ -15,7 +15,7 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// The initial orientation, which the latch holds before the first matrix.
+    /// The initial orientation, which is valid until the first matrix arrives.
     pub const IDENTITY: Self = Self { rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
 
     /// Creates a rotation from the rows of its matrix.
@@ -69,15 +69,15 @@ impl Orientation {
         self.rows.map(|row| dot(row, vector))
     }
 
-    /// Returns the nine words of the matrix register: signed, with `matrix_bits` bits, largest word for 1, rounded to
-    /// even.
+    /// Returns the nine words of the matrix register. They are signed and have `matrix_bits` bits. The largest word
+    /// represents 1, and halves are rounded to even.
     #[must_use]
     pub fn words(&self, matrix_bits: u64) -> MatrixWords {
         MatrixWords(self.rows.map(|row| row.map(|component| signed_word(component, matrix_bits))))
     }
 }
 
-/// The nine words of the matrix register.
+/// The nine signed words of the matrix register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MatrixWords(
     /// Rows of signed words.
@@ -85,7 +85,7 @@ pub struct MatrixWords(
 );
 
 impl MatrixWords {
-    /// Rotates a vector to world axes. The sums of products keep all bits.
+    /// Rotates a vector of words to world axes. The sums of products keep all bits.
     #[must_use]
     pub fn turn(&self, vector: [i32; 3]) -> [i64; 3] {
         self.0.map(|row| (0..3).map(|i| i64::from(row[i]) * i64::from(vector[i])).sum())
@@ -100,9 +100,9 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The orientations that have arrived, each with the instant from which it can be latched.
+/// The orientations that have arrived, each with the time from which on it is valid.
 ///
-/// A matrix that is not a rotation is refused and counted, and the previous one stays valid.
+/// A matrix that is not a rotation is refused and counted, and the previous matrix stays valid.
 #[derive(Clone, Debug)]
 pub struct OrientationLatch {
     matrix_bits: u64,
@@ -114,7 +114,7 @@ pub struct OrientationLatch {
 }
 
 impl OrientationLatch {
-    /// Creates a latch with words of `matrix_bits` bits and the initial orientation.
+    /// Creates a register with words of `matrix_bits` bits and the initial orientation.
     #[must_use]
     pub fn new(matrix_bits: u64) -> Self {
         let first = (Time::ZERO, Orientation::IDENTITY.words(matrix_bits));
@@ -125,7 +125,7 @@ impl OrientationLatch {
     ///
     /// # Errors
     ///
-    /// Same as [`Orientation::new`]. A refused matrix is counted and changes nothing.
+    /// Same as [`Orientation::new`]. A refused matrix is counted and does not replace the previous one.
     pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         match Orientation::new(rows) {
             Ok(orientation) => {
@@ -140,20 +140,20 @@ impl OrientationLatch {
         }
     }
 
-    /// Returns the words latched at an instant: those of the last matrix that had arrived.
+    /// Returns the words that the display reads at `time`: those of the last matrix that had arrived.
     #[must_use]
     pub fn at(&self, time: Time) -> MatrixWords {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded[after.saturating_sub(1)].1
     }
 
-    /// Discards matrices that cannot be latched at `time` or later.
+    /// Discards matrices that the display cannot read any more at `time` or later.
     pub fn discard_before(&mut self, time: Time) {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded.drain(..after.saturating_sub(1));
     }
 
-    /// Returns the numbers of accepted and of refused matrices.
+    /// Returns the number of accepted matrices and the number of refused matrices.
     #[must_use]
     pub const fn counts(&self) -> [u64; 2] {
         [self.loads, self.refused]

@@ -15,21 +15,21 @@ use std::sync::Arc;
 /// First word of a message that begins an update of a buffer.
 const BEGIN: Word = 0x0041_5042;
 
-/// First word of a request to swap together with other memories.
+/// First word of a request to swap at the same retrace as other memories.
 const TOGETHER: Word = 0x0041_5054;
 
 /// First word of an orientation.
 const MATRIX: Word = 0x0041_504D;
 
-/// Returns the division of six faces into regions of 128 x 128. The faces lie one below the other, in the order of
-/// their indices.
+/// Returns the division of six faces into regions of 128 x 128 texels. The faces lie one below the other, in the order
+/// of their indices.
 #[must_use]
 pub const fn region_grid(face_texels: u32) -> RegionGrid {
     let height = face_texels * CubeFace::ALL.len() as u32;
     RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
 }
 
-/// Returns the region in a column and row of a face, or `None` outside the face.
+/// Returns the index of the region in a column and row of a face's regions. Returns `None` outside the face.
 #[must_use]
 pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
     let across = face_texels / REGION_SIZE;
@@ -52,7 +52,7 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
     words.into()
 }
 
-/// Returns the words of a request to show a buffer at the first retrace at which all memories of a set can swap.
+/// Returns the words that request to show a buffer at the first retrace at which all memories of a set can swap.
 ///
 /// Bit k of `memories` stands for memory k.
 #[must_use]
@@ -60,7 +60,7 @@ pub fn swap_together(buffer: u8, memories: u8) -> Arc<[Word]> {
     [TOGETHER, buffer.into(), memories.into()].into()
 }
 
-/// Returns the words of an orientation, given by the rows of the matrix from head axes to world axes.
+/// Returns the words of a message that sets the orientation. `rows` is the matrix from head axes to world axes.
 #[must_use]
 pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
     let components = rows.into_iter().flatten().map(|component| (component as f32).to_bits());
@@ -72,9 +72,10 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 pub(crate) enum ArpMessage {
     /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
-    /// Requests a buffer, together with a set of memories, or alone if the set is 0.
+    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If it is 0, the
+    /// memory swaps alone.
     Swap { buffer: u8, together: u8 },
-    /// Sets an orientation, not yet checked.
+    /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),
 }
 

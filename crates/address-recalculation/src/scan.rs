@@ -1,4 +1,4 @@
-//! Exact times of light and latch of each pixel.
+//! Exact times at which each pixel is displayed and its orientation is read.
 
 use crate::error::ArpError;
 use crate::timing::{ArpTiming, ScanTiming};
@@ -6,11 +6,11 @@ use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use serde::{Deserialize, Serialize};
 
-/// Event before which the newest orientation is latched.
+/// Event before which the display reads (latches) the newest orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Latch {
-    /// The first visible pixel of a field, as published.
+    /// The first visible pixel of a field (published).
     #[default]
     Field,
     /// The first visible pixel of each line.
@@ -24,7 +24,8 @@ impl Latch {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, pixels and latches, all computed from time zero. Field `n` scans the even lines if `n` is even.
+/// Times of retraces, of displayed pixels and of reading the orientation. All are computed from time zero. Field `n`
+/// scans the even lines if `n` is even.
 ///
 /// The times equal those of the Pixel-Planes 5 frame buffer with the same parameters. The code is separate because
 /// crates of boards do not depend on each other.
@@ -75,7 +76,8 @@ impl Scan {
         PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
     }
 
-    /// Returns the time at which a pixel of the frame lights in a field, or `None` if the field does not scan it.
+    /// Returns the time at which a field displays a pixel of the frame. Returns `None` if the field does not scan the
+    /// pixel.
     #[must_use]
     pub fn lights(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let parity = FieldParity::of_field(field).first_line();
@@ -88,16 +90,16 @@ impl Scan {
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
-    /// Returns the time at which the texels of a pixel are read.
+    /// Returns the time at which the texels of a pixel are read. Returns `None` if the field does not scan the pixel.
     #[must_use]
     pub fn reads(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(Time(self.lights(x, y, field)?.0.saturating_sub(self.read_ahead.0)))
     }
 
-    /// Returns the time at which the orientation of a pixel is latched.
+    /// Returns the time at which the orientation for a pixel is read.
     ///
-    /// This is the duration of all stages before the light of the pixel, or of the first visible pixel of its line or
-    /// field.
+    /// It precedes the display of one pixel by the duration of all stages: this pixel, or the first visible pixel of
+    /// its line or field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.lights(x, y, field)?;

@@ -6,12 +6,12 @@ use crate::timing::ArpTiming;
 /// The farthest depth, in 24 bits. A texel with this depth is empty.
 pub const DEPTH_FARTHEST: u32 = 0x00FF_FFFF;
 
-/// Numbers of bits that a display memory stores for colour and depth.
+/// Numbers of bits with which a display memory stores colour and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TexelFormat {
-    /// 24 bits, or 16 bits as 5, 6 and 5.
+    /// Number of colour bits: 24, or 16 (5 red, 6 green, 5 blue).
     pub colour_bits: u32,
-    /// 24 bits, or the highest 16 of the 24 bits.
+    /// Number of depth bits: 24, or 16 (the highest 16 of the 24 bits).
     pub depth_bits: u32,
 }
 
@@ -24,32 +24,32 @@ impl TexelFormat {
 
     /// Returns the number of ring words per texel: 1 if colour and depth fit into 32 bits, otherwise 2.
     ///
-    /// A shared word has the colour in its lower half.
+    /// If they share a word, the colour is in its lower half.
     #[must_use]
     pub const fn words(&self) -> u32 {
         if self.colour_bits + self.depth_bits <= 32 { 1 } else { 2 }
     }
 
-    /// Returns a colour (0x00RRGGBB) after storage. With 16 bits, the upper bits of each channel are repeated in its
-    /// lower bits.
+    /// Returns a colour (0x00RRGGBB) as it is read back from a memory. With 16 bits, the upper bits of each channel are
+    /// repeated in its lower bits.
     #[must_use]
     pub const fn kept_colour(&self, colour: u32) -> u32 {
         if self.colour_bits == 24 { colour & 0x00FF_FFFF } else { widened(narrowed(colour)) }
     }
 
-    /// Returns the stored bits of a depth of 24 bits.
+    /// Returns the bits that a memory stores of a 24-bit depth.
     #[must_use]
     pub const fn kept_depth(&self, depth: u32) -> u32 {
         (depth & DEPTH_FARTHEST) >> (24 - self.depth_bits)
     }
 }
 
-/// Converts a colour to 5, 6 and 5 bits.
+/// Converts a colour from 8 bits per channel to 5 bits red, 6 green and 5 blue.
 pub(crate) const fn narrowed(colour: u32) -> u32 {
     (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }
 
-/// Converts a colour of 5, 6 and 5 bits to 8 bits per channel.
+/// Converts a colour of 5 bits red, 6 green and 5 blue to 8 bits per channel.
 pub(crate) const fn widened(colour: u32) -> u32 {
     let red = colour >> 11 & 31;
     let green = colour >> 5 & 63;
@@ -59,9 +59,9 @@ pub(crate) const fn widened(colour: u32) -> u32 {
 
 /// The six faces of one buffer, initially empty.
 ///
-/// Each texel is one word. The upper half is its nearness, which is the farthest depth minus its depth. The lower half
-/// is its colour. The larger of two words is therefore the nearer texel, and 0 is an empty one. The host allocates no
-/// pages for undrawn parts.
+/// Each texel is one word. The upper half is the nearness: the farthest depth minus the texel's depth. The lower half
+/// is the colour. The larger of two words is therefore the nearer texel, and 0 is an empty texel. The host allocates no
+/// memory pages for undrawn parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaceSet {
     texels: u32,
@@ -82,13 +82,14 @@ impl FaceSet {
         self.texels
     }
 
-    /// Returns the stored numbers of bits.
+    /// Returns the numbers of bits with which colour and depth are stored.
     #[must_use]
     pub const fn format(&self) -> TexelFormat {
         self.format
     }
 
-    /// Overwrites a texel with a colour 0x00RRGGBB and a depth of 24 bits. The farthest depth makes it empty.
+    /// Overwrites a texel with a colour 0x00RRGGBB and a depth of 24 bits. With the farthest depth the texel becomes
+    /// empty.
     ///
     /// # Panics
     ///
@@ -131,7 +132,7 @@ impl FaceSet {
         }
     }
 
-    /// Returns the colour and the stored depth of a texel, or `None` for an empty one.
+    /// Returns the colour and the stored depth of a texel. Returns `None` for an empty texel.
     #[must_use]
     pub fn texel(&self, texel: TexelAddress) -> Option<(u32, u32)> {
         let word = self.words[texel.index(self.texels)];
@@ -139,13 +140,13 @@ impl FaceSet {
         (nearness(word) > 0).then(|| (colour(word), farthest - nearness(word)))
     }
 
-    /// Returns all words, by face and row.
+    /// Returns the words of all texels, by face and row.
     pub(crate) fn words(&self) -> &[u64] {
         &self.words
     }
 }
 
-/// Returns the word of a texel, which is 0 for an empty one.
+/// Returns the word for a texel of this colour and depth. The word is 0 for an empty texel.
 #[inline(always)]
 pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     let farthest = DEPTH_FARTHEST >> (24 - format.depth_bits);
@@ -153,7 +154,8 @@ pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     if nearness == 0 { 0 } else { (nearness as u64) << 32 | format.kept_colour(colour) as u64 }
 }
 
-/// Returns the nearness of a texel's word: farthest depth minus depth, 0 for an empty texel.
+/// Returns the nearness stored in a texel's word: the farthest depth minus the texel's depth. It is 0 for an empty
+/// texel.
 #[inline(always)]
 pub(crate) const fn nearness(word: u64) -> u32 {
     (word >> 32) as u32

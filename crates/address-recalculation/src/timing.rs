@@ -1,35 +1,36 @@
-//! All parameters of the display.
+//! All parameters of the display, with their sources.
 
 use crate::error::ArpError;
 use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::{Clock, Span};
 
 parameters::parameter_table! {
-    /// Word lengths, memories and clock of the pipeline.
+    /// Word lengths, memories and stage time of the pipeline.
     pub struct ArpTiming {
-        /// Display memories per eye, each a double-buffered cube with depth.
+        /// Number of display memories per eye. Each memory has two buffers of six faces with depth.
         display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
-        /// Texels along an edge of a face, including guard texels. Must be a multiple of 128.
+        /// Number of texels along an edge of a face, including guard texels. It must be a multiple of 128.
         face_texels: 256, "texels", Assumed, 128..=2048, "not printed; a port of the ring can fill faces of 256 texels 25 times a second; 512 for ideal faces";
-        /// Texels on each side of a face that repeat the content of the neighbouring face.
+        /// Number of texels on each side of a face that repeat the content of the neighbouring face.
         guard_texels: 1, "texels", Assumed, 0..=8, "not printed; with 1, every footprint lies on its face";
-        /// Bits of each component of a viewing vector, including the sign.
+        /// Number of bits in each component of a viewing vector, including the sign.
         vector_bits: 16, "bits", Assumed, 8..=24, "not printed; 16 bits give an error of 0.02 texels on faces of 512";
-        /// Bits of each component of the matrix, including the sign.
+        /// Number of bits in each component of the matrix, including the sign.
         matrix_bits: 16, "bits", Assumed, 8..=24, "not printed; the same as the vectors";
-        /// Bits of a quotient. The divider has one stage per bit.
+        /// Number of bits in a quotient. The divider has one stage per bit.
         quotient_bits: 16, "bits", Assumed, 8..=20, "not printed; 1/128 texel of 512";
-        /// Bits of each of the two fractions that weight four texels. 0 selects the nearest texel.
+        /// Number of bits in each of the two fractions that weight four texels. With 0, the pixel shows the nearest
+        /// texel.
         weight_bits: 4, "bits", Assumed, 0..=8, "RPM has hardware for weights and does not print their width";
-        /// Bits of depth in a display memory: 16 or 24.
+        /// Number of bits of depth in a display memory: 16 or 24.
         depth_bits: 24, "bits", Derived, 16..=24, "the machine's depth";
-        /// Bits of colour in a display memory: 24, or 16 as 5, 6 and 5.
+        /// Number of bits of colour in a display memory: 24, or 16 (5 red, 6 green, 5 blue).
         colour_bits: 24, "bits", Derived, 16..=24, "the machine's colour";
-        /// Duration of one stage.
+        /// Duration of one pipeline stage.
         stage_ps: 25_000, "ps", Assumed, 1_000..=38_461 in 1..=1_000_000, "RP94: orientation less than 1 us before the first pixel, so below 38.46 ns in 26 stages";
-        /// Horizontal angle of the picture.
+        /// Horizontal viewing angle of the picture.
         horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 only with the equidistant lens or a table";
-        /// Time of one word at a port.
+        /// Time to receive one word at a ring port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }
 }
@@ -39,54 +40,56 @@ parameters::parameter_table! {
     pub struct ScanTiming {
         /// Period of the pixel clock, multiplied by `pixel_divisor`.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
-        /// Divisor of the period of the pixel clock.
+        /// Number by which `pixel_ps` is divided to get the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
-        /// Pixel periods in a line, including blanking.
+        /// Number of pixel periods in a line, including blanking.
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
-        /// Lines in a frame of two fields, including blanking.
+        /// Number of lines in a frame of two fields, including blanking.
         frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
-        /// Visible pixels in a line.
+        /// Number of visible pixels in a line.
         visible_pixels: 640, "pixels", Published, 640..=640 in 1..=4_096, "TR94";
-        /// Visible lines in a field.
+        /// Number of visible lines in a field.
         visible_lines: 240, "lines", Published, 240..=240 in 1..=4_096, "TR94: 480 lines in two fields";
-        /// Blanked pixel periods before the visible pixels of a line.
+        /// Number of blanked pixel periods before the visible pixels of a line.
         left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "as in the frame buffer: all horizontal blanking comes first";
-        /// Blanked whole lines after a retrace.
+        /// Number of blanked lines between a retrace and the first visible line.
         top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "as in the frame buffer: all vertical blanking comes first";
     }
 }
 
-/// Number of stages apart from dividers and comparators, one clock each.
+/// Number of stages apart from dividers and comparators. Each takes one clock.
 ///
-/// They are table, multiply, two adders, face, address, memory and interpolate.
+/// These stages are table, multiply, two adders, face, address, memory and interpolate.
 const FIXED_STAGES: u64 = 8;
 
 impl ArpTiming {
-    /// Returns the number of stages in which the memories are compared in pairs.
+    /// Returns the number of stages in which the depths of the memories are compared in pairs.
     #[must_use]
     pub const fn compare_stages(&self) -> u64 {
         self.display_memories.next_power_of_two().trailing_zeros() as u64
     }
 
-    /// Returns the number of stages from the table to the light: 26 for four memories and quotients of 16 bits.
+    /// Returns the number of stages from reading the table to displaying the pixel: 26 for four memories and quotients
+    /// of 16 bits.
     #[must_use]
     pub const fn stages(&self) -> u64 {
         FIXED_STAGES + self.quotient_bits + self.compare_stages()
     }
 
-    /// Returns the duration of all stages. The orientation of a pixel must be known this long before its light.
+    /// Returns the duration of all stages. The orientation for a pixel must be known this long before the pixel is
+    /// displayed.
     #[must_use]
     pub const fn depth(&self) -> Span {
         Span(self.stages() * self.stage_ps)
     }
 
-    /// Returns how long before its light the texels of a pixel are read: memory, comparators and interpolation.
+    /// Returns the time from reading a pixel's texels to displaying the pixel: memory, comparators and interpolation.
     #[must_use]
     pub const fn read_ahead(&self) -> Span {
         Span((2 + self.compare_stages()) * self.stage_ps)
     }
 
-    /// Checks all parameters against their limits, and the rules between them.
+    /// Checks all parameters against their limits, and the rules that connect parameters.
     ///
     /// # Errors
     ///
@@ -125,7 +128,7 @@ impl ScanTiming {
         Ok(())
     }
 
-    /// Returns the pixel clock and the field clock, or `None` if a parameter is too large.
+    /// Returns the pixel clock and the field clock. Returns `None` if a parameter is too large.
     pub(crate) fn clocks(&self) -> Option<[Clock; 2]> {
         let pixels = self.frame_lines.checked_mul(self.line_pixels)?;
         let field = Clock::new(self.pixel_ps.checked_mul(pixels)?, self.pixel_divisor.checked_mul(2)?)?;

@@ -1,4 +1,4 @@
-//! Errors for invalid user input name the parameter, the expected and the found value.
+//! Tests of invalid user input: errors name the parameter, the expected and the found value.
 
 use address_recalculation::{ArpConfig, ArpTiming, Lens, Picture, ScanTiming};
 use proptest::prelude::*;
@@ -74,7 +74,8 @@ fn a_table_has_a_vector_for_each_pixel_row_by_row() {
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
-/// The corner pixel of a picture of 2 x 1 pixels lies at rho^2 = 1/4, where the slope is 1 + 3 x 1/4 x -4/3 = 0.
+/// Checks a lens that has slope zero in the corner of a picture of 2 x 1 pixels. There rho^2 is 1/4, so the slope is
+/// `1 + 3 x 1/4 x -4/3 = 0`.
 #[test]
 fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
@@ -110,7 +111,7 @@ proptest! {
         let _ = Lens::read(Cursor::new(bytes), &TINY);
     }
 
-    /// Compares the check with the smallest slope found in a thousand steps from the middle to the corner.
+    /// Compares the check of a lens with the smallest slope found in a thousand steps from the middle to the corner.
     #[test]
     fn a_lens_that_folds_before_the_corner_is_refused(
         k1 in -1.5..1.5_f64,

@@ -1,4 +1,4 @@
-//! The display on the ring: updates, swaps, orientations and the visible picture.
+//! Tests of the display on the ring: updates, swaps, orientations and the displayed picture.
 
 mod support;
 
@@ -119,8 +119,8 @@ fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
     assert_eq!(missed, [1, 1]);
 }
 
-/// A request that arrives at the retrace itself is too late for this retrace. The other memory of the set must wait as
-/// well.
+/// Checks that a swap request that arrives exactly at the retrace is too late for this retrace. The other memory of the
+/// set then has to wait as well.
 #[test]
 fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
     let mut bench = Bench::new(&CONFIG);
@@ -135,7 +135,8 @@ fn a_set_of_which_one_is_asked_for_at_a_retrace_waits_for_the_next() {
     assert_eq!(buffers(&bench), [1, 1]);
 }
 
-/// Regions are numbered by face and row. The map has a bit for each, starting at the lowest bit of its first word.
+/// Checks that regions are numbered by face and row. A map has a bit for each region, starting at the lowest bit of its
+/// first word.
 #[test]
 fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
     for texels in [128, 256, 512] {
@@ -161,7 +162,8 @@ fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
     }
 }
 
-/// If another update of the first memory counted as the set's update, the set's real update would wait forever.
+/// Checks two overlapping sets of memories. If another update of the first memory counted as the set's update, the
+/// set's real update would wait forever.
 #[test]
 fn an_update_of_another_set_does_not_stand_for_one_of_this() {
     let mut bench = Bench::new(&CONFIG);
@@ -233,7 +235,8 @@ fn what_cannot_be_used_is_a_counted_fault_without_effect() {
     }
 }
 
-/// Colours alone take 16 messages. A memory with depth refuses them, and the background memory accepts nothing else.
+/// Checks that a memory with depth refuses a region of colours alone, which takes 16 messages. The background memory
+/// accepts nothing else.
 #[test]
 fn a_region_needs_depths_but_in_the_background_memory() {
     let config = ArpConfig { has_background_memory: true, ..CONFIG };
@@ -266,7 +269,7 @@ fn the_background_memory_is_seen_where_nothing_else_is() {
     assert_eq!(bench.pixel(3, 3, 3), 0x88);
 }
 
-/// Sends six faces of one colour each.
+/// Sends six faces, each filled with its own colour.
 fn coloured(bench: &mut Bench) {
     let regions: Vec<u16> = (0..6).collect();
     bench.begin(0, 1, &regions);
@@ -276,7 +279,8 @@ fn coloured(bench: &mut Bench) {
 
 const QUARTER: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
-/// A head that looked along -z looks along -x (face 1) after a rotation of 90 degrees to the left, about +y.
+/// Checks a rotation of the head by 90 degrees to the left, about +y. A head that looked along -z then looks along -x
+/// (face 1).
 #[test]
 fn a_turn_of_the_head_needs_no_update() {
     let mut bench = Bench::new(&CONFIG);
@@ -306,7 +310,8 @@ fn an_orientation_is_latched_to_the_picosecond() {
     }
 }
 
-/// A matrix arrives in the middle of a line. It takes effect at this pixel, at the next line, or at the next field.
+/// Checks a matrix that arrives in the middle of a line. Depending on the setting, it takes effect at the next pixel,
+/// the next line or the next field.
 #[test]
 fn a_picture_is_torn_where_the_latch_lets_it() {
     let split = |latch| {
@@ -353,7 +358,7 @@ fn nonsense_of_a_tracker_is_refused_and_the_last_good_orientation_stays() {
     assert_eq!(bench.display.faults().0, 4, "those that came over the ring");
 }
 
-/// If a tracker falls silent, the last orientation stays valid for any number of fields.
+/// Checks that the last orientation stays valid for any number of fields if the tracker stops sending.
 #[test]
 fn a_silent_tracker_leaves_the_last_orientation() {
     let mut bench = Bench::new(&CONFIG);

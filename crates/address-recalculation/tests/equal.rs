@@ -1,4 +1,4 @@
-//! The fast model and the reference model give identical bits for all word lengths, faces and contents.
+//! Tests that the fast model and the reference model give identical bits for all word lengths, faces and contents.
 
 mod support;
 
@@ -27,7 +27,8 @@ fn by_lookup(
     (pixels, [stats.split, stats.conflicts])
 }
 
-/// Computes every pixel through every stage. A pixel leaves after as many clocks as there are stages.
+/// Computes every pixel in the reference model through every stage. A pixel leaves after as many clocks as there are
+/// stages.
 fn by_registers(
     config: &ArpConfig,
     orientation: &Orientation,
@@ -125,7 +126,7 @@ proptest! {
     }
 }
 
-/// Rotations by multiples of 45 degrees bring edges and corners of faces into the picture.
+/// Checks rotations by multiples of 45 degrees, which bring edges and corners of faces into the picture.
 #[test]
 fn they_agree_where_faces_meet() {
     for guard_texels in [0, 1] {
@@ -140,7 +141,8 @@ fn they_agree_where_faces_meet() {
     }
 }
 
-/// Depths differ by one, and their means are rounded: near an edge, in a corner of three texels, and inside a face.
+/// Checks depths that differ by one and whose means are rounded: near an edge, in a corner of three texels, and inside
+/// a face.
 #[test]
 fn they_agree_on_depths_one_apart() {
     let corner = (1.0 / 2_f64.sqrt()).atan();
@@ -165,8 +167,8 @@ fn they_agree_on_depths_one_apart() {
     }
 }
 
-/// Directions with two or three equally long components lie on edges. A quotient is 0 there, or 1, which does not fit
-/// into its word.
+/// Checks directions on edges, whose two or three longest components are equal. A quotient there is 0 or 1, and 1 does
+/// not fit into its word.
 #[test]
 fn they_agree_on_directions_that_faces_share() {
     let all = (0..27).map(|n| [n % 3, n / 3 % 3, n / 9].map(|digit| f64::from(digit) - 1.0));
@@ -181,7 +183,8 @@ fn they_agree_on_directions_that_faces_share() {
     }
 }
 
-/// Without guard texels, a footprint in a corner is split. With guard texels, none is.
+/// Checks footprints in corners. Without guard texels such a footprint has texels on several faces. With guard texels
+/// none has.
 #[test]
 fn split_footprints_are_counted_without_a_guard_alone() {
     let corner =
@@ -196,8 +199,8 @@ fn split_footprints_are_counted_without_a_guard_alone() {
     assert_eq!(counts[1], [0, 0]);
 }
 
-/// A run of pixels with its own orientation may have any length, which covers both the group and the single
-/// computation.
+/// Checks that consecutive pixels with one orientation can have any number. Small numbers are computed one by one,
+/// others in groups.
 #[test]
 fn a_picture_is_the_same_in_runs_of_any_length() {
     for guard_texels in [0, 1] {

@@ -1,4 +1,4 @@
-//! Texels that a pixel reads: beyond edges and corners, in which banks, and in which regions of the faces.
+//! Tests of the texels that a pixel reads: beyond edges and corners, in which banks, and in which regions of the faces.
 
 mod support;
 
@@ -15,17 +15,18 @@ const SIZE: u32 = 128;
 const BARE: ArpTiming = ArpTiming { face_texels: SIZE as u64, guard_texels: 0, ..ArpTiming::PAPERS };
 const FACE: FaceGeometry = FaceGeometry { texels: SIZE, guard: 0 };
 
-/// The distance of a face's plane, large enough that directions in words are exact.
+/// The distance of a face's plane from the eye. It is large enough that directions in words are exact.
 const ONE: i64 = 1 << 20;
 
-/// Returns the texel that contains the middle of a texel beside a face, computed in floating point.
+/// Returns the texel of the cube in the direction of a position beside a face, computed in floating point.
 fn neighbour(face: CubeFace, column: f64, row: f64) -> Option<TexelAddress> {
     let [u, v] = [column, row].map(|n| (2.0 * n + 1.0) / f64::from(SIZE) - 1.0);
     let (forward, right, up) = (face.forward(), face.right(), face.up());
     FACE.texel([0, 1, 2].map(|i| forward[i] as f64 + u * right[i] as f64 - v * up[i] as f64))
 }
 
-/// Returns the footprint of a position on a face, in units of 1/[`ONE`] to the right and downwards from the middle.
+/// Returns the footprint (the four texels and their weights) of a position on a face. `right` and `down` are distances
+/// from the middle, in units of 1/[`ONE`].
 fn footprint(face: CubeFace, right: i64, down: i64) -> Footprint {
     let axes = [face.forward(), face.right(), face.up()];
     let direction = [0, 1, 2].map(|i| ONE * axes[0][i] + right * axes[1][i] - down * axes[2][i]);
@@ -37,7 +38,7 @@ const fn middle(n: u32) -> i64 {
     (2 * n as i64 + 1 - SIZE as i64) * ONE / SIZE as i64
 }
 
-/// Beyond each edge of each face, every row must continue with the texel of the neighbouring face.
+/// Checks that beyond each edge of each face, every row continues with the texel of the neighbouring face.
 #[test]
 fn texels_beyond_an_edge_are_those_of_the_neighbour() {
     let edge = f64::from(SIZE);
@@ -66,7 +67,7 @@ fn texels_beyond_an_edge_are_those_of_the_neighbour() {
     }
 }
 
-/// Three faces meet in a corner, so one of the four texels around it lies on no face.
+/// Checks corners, where three faces meet. One of the four texels around a corner lies on no face.
 #[test]
 fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() {
     let (first, last) = (-1.0, f64::from(SIZE));
@@ -89,8 +90,8 @@ fn the_texel_beyond_a_corner_is_none_and_the_two_beside_it_are_the_neighbours() 
     }
 }
 
-/// A bank holds texels with one parity of column and row. Two different texels of a footprint in one bank need two
-/// accesses.
+/// Checks second accesses. A bank holds the texels with one parity of column and row. Two different texels of a
+/// footprint in one bank need two accesses.
 #[test]
 fn a_second_access_is_for_two_texels_of_the_same_parity() {
     let mut random = SplitMix64::new(7);
@@ -121,7 +122,7 @@ fn a_second_access_is_for_two_texels_of_the_same_parity() {
     assert!(!nearest.has_conflict(), "the nearest texel is read once");
 }
 
-/// Of two lists of texels drawn on top of each other, the nearer texel stays, and the first one on ties.
+/// Checks two lists of texels drawn on top of each other. The nearer texel stays. At equal depth, the first one stays.
 #[test]
 fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
     let config = ArpConfig { timing: BARE, ..ArpConfig::MACHINE };
@@ -152,7 +153,8 @@ fn of_what_is_drawn_into_faces_the_nearer_stays_and_the_first_on_ties() {
     }
 }
 
-/// For three texels around a corner, the mean colour is rounded to nearest, and the mean nearness is rounded down.
+/// Checks a pixel with three texels around a corner. Their mean colour is rounded to the nearest, and the mean nearness
+/// is rounded down.
 #[test]
 fn around_a_corner_the_mean_of_three_is_shown_in_either_order() {
     let corner = footprint(CubeFace::NegZ, ONE - 1, 1 - ONE);
@@ -202,7 +204,7 @@ fn corner_turn(vector: [i32; 3]) -> Orientation {
     turned(DQuat::from_rotation_arc(from, to))
 }
 
-/// The number of a face is its position in a buffer.
+/// Checks that the index of a face is its position in a buffer.
 #[test]
 fn faces_are_numbered_as_they_lie_in_a_buffer() {
     let axes: Vec<[i64; 3]> = CubeFace::ALL.into_iter().map(CubeFace::forward).collect();

@@ -1,4 +1,4 @@
-//! Interface of the display to the machine and the viewer, and contents of its memories.
+//! Tests of the display's interface to the machine and the viewer, and of the contents of its memories.
 
 mod support;
 
@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use support::bench::{Bench, CONFIG};
 use support::{texels, turned};
 
-/// Words of a region, with a flag that is true after they were read.
+/// Words of a region, with a flag that becomes true when they are read.
 #[derive(Debug)]
 struct Words {
     words: Arc<[Word]>,
@@ -49,14 +49,14 @@ fn filled(config: &ArpConfig, parts: u32, seed: u64) -> (Bench, Vec<Arc<Words>>)
     (bench, sources)
 }
 
-/// Extends a number of `bits` bits to eight bits by repeating its upper bits.
+/// Extends a number from `bits` bits to eight bits by repeating its upper bits.
 fn widened(number: u32, bits: usize) -> u32 {
     let digits = format!("{number:0bits$b}").repeat(2);
     u32::from_str_radix(&digits[..8], 2).expect("binary")
 }
 
-/// With 16 + 16 bits, the depth is in the upper half, and colours of 5, 6 and 5 bits in the lower half. The farthest
-/// depth is empty.
+/// Checks texels of 16 + 16 bits. The depth is in the upper half of a word, and colours of 5, 6 and 5 bits are in the
+/// lower half. The farthest depth marks an empty texel.
 #[test]
 fn a_word_of_16_and_16_bits_is_a_texel() {
     let timing = ArpTiming { colour_bits: 16, depth_bits: 16, ..CONFIG.timing };
@@ -88,7 +88,8 @@ fn a_word_of_16_and_16_bits_is_a_texel() {
     }
 }
 
-/// Returns the footprints of all pixels of a frame for one orientation, computed by the address unit.
+/// Returns the footprints (the four texels and their weights) of all pixels of a frame for one orientation, computed by
+/// the address unit.
 fn footprints(config: &ArpConfig, orientation: &Orientation) -> Vec<Footprint> {
     let table = config.table().expect("valid");
     let matrix = orientation.words(config.timing.matrix_bits);
@@ -101,7 +102,8 @@ fn piece(size: u32, texel: TexelAddress) -> u16 {
     face_region(size, texel.face, texel.column / 128, texel.row / 128).expect("on a face").0
 }
 
-/// Only regions with a texel of some footprint are computed, and the picture equals that of completely computed faces.
+/// Checks that only regions with a texel of some pixel's footprint are computed. The picture equals the picture from
+/// completely computed faces.
 ///
 /// The test covers faces with and without guard texels, and both exact and wider words.
 #[test]
@@ -150,7 +152,7 @@ fn those_regions_are_computed_that_a_pixel_reads() {
     assert!(counts.len() > 2, "{counts:?} regions");
 }
 
-/// The picture looks at one place, near a border between regions or across it. Texels 127 and 128 lie in different
+/// Checks views of a small area near a border between regions or across the border. Texels 127 and 128 lie in different
 /// regions.
 #[test]
 fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
@@ -177,7 +179,8 @@ fn of_neighbouring_pieces_those_are_computed_on_which_a_texel_lies() {
     }
 }
 
-/// With a latch per pixel, a matrix arrives in the middle of a line. Pixels before its arrival use the previous matrix.
+/// Checks a line with two orientations. The display reads the orientation for each pixel, and a matrix arrives in the
+/// middle of the line. Pixels before its arrival use the previous matrix.
 #[test]
 fn a_line_of_two_orientations_is_a_part_of_each_picture() {
     let timing = ArpTiming { display_memories: 1, ..ArpTiming::PAPERS };
@@ -223,7 +226,7 @@ fn a_remembered_field_says_with_which_matrix_a_pixel_was_looked_up() {
     assert_eq!(bench.arp().look_stats(Eye::Left, PeriodNumber(4)), None);
 }
 
-/// There are two buffers of six faces. The background memory stores only colours.
+/// Checks the size of a memory: two buffers of six faces. The background memory stores only colours.
 #[test]
 fn a_memory_has_bits_of_colour_and_depth_for_each_texel_of_two_buffers() {
     for (colour_bits, depth_bits) in [(24, 24), (16, 16), (16, 24)] {

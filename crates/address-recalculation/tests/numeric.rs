@@ -22,7 +22,7 @@ fn texel(geometry: FaceGeometry, direction: Vector) -> (CubeFace, u32, u32) {
     (texel.face, texel.column, texel.row)
 }
 
-/// Returns the texel computed in hardware words, from a direction of 30 bits.
+/// Returns the texel for a direction of 30 bits, computed in the word lengths of the hardware.
 fn texel_by_words(guard: u64, direction: Vector) -> (CubeFace, u32, u32) {
     let timing = ArpTiming { face_texels: 512, guard_texels: guard, weight_bits: 0, ..ArpTiming::PAPERS };
     let longest = direction.iter().fold(0.0_f64, |most, component| most.max(component.abs()));
@@ -84,10 +84,10 @@ fn case_6_an_equidistant_lens_sees_behind_the_head() {
     assert_eq!(Lens::Equidistant.view(&odd, 1, 1), [0.0, 0.0, -1.0], "no distance has no direction");
 }
 
-/// The case lies exactly on the border between two texels: 1 + (1 + 1/3) / 2 x 510 = 341.
+/// Checks a direction exactly on the border between two texels: 1 + (1 + 1/3) / 2 x 510 = 341.
 ///
-/// In 16 bits the quotient 2/3 is 43,690. 43,690 x 510 + 255 = 22,282,155 is 85 less than 340 x 65,536, so it selects
-/// the texel before.
+/// In 16 bits the quotient 2/3 is 43,690. Then 43,690 x 510 + 255 = 22,282,155 is 85 less than 340 x 65,536, so it
+/// selects the previous texel.
 #[test]
 fn case_7_a_direction_has_a_face_and_a_texel() {
     let direction = [0.3, -0.2, -0.9];
@@ -99,7 +99,8 @@ fn case_7_a_direction_has_a_face_and_a_texel() {
     assert_eq!(texel_by_words(1, [0.3001, -0.2, -0.9]), (CubeFace::NegZ, 341, 312));
 }
 
-/// Exact fractions 1/2 and 1/6 give 18.3333. Rounded to 3/16, the fraction gives 15 + 20 x 3/16 = 18.75.
+/// Checks an interpolated value. The exact fractions 1/2 and 1/6 give 18.3333. With fractions rounded to 3/16, the
+/// result is 15 + 20 x 3/16 = 18.75.
 #[test]
 fn case_8_four_texels_in_four_banks() {
     let (_, [a, b]) = GUARDED.between_texels([0.3, -0.2, -0.9]).expect("a direction");
@@ -194,9 +195,10 @@ fn any_rotation(random: &mut SplitMix64) -> DQuat {
     DQuat::from_xyzw(short * v.sin(), short * v.cos(), long * w.sin(), long * w.cos())
 }
 
-/// Returns the largest distance in texels between positions computed in words and in floating point.
+/// Returns the largest distance in texels between two positions of a direction: computed in hardware words, and in
+/// floating point.
 ///
-/// It covers 40,000 pairs of a rotation and a pixel for which both computations hit the same face.
+/// The sample has 40,000 pairs of a rotation and a pixel for which both computations hit the same face.
 fn worst_address(bits: u64) -> f64 {
     let timing = ArpTiming { face_texels: 512, vector_bits: bits, matrix_bits: bits, ..ArpTiming::PAPERS };
     let config = ArpConfig { timing, ..ArpConfig::IDEAL };
@@ -218,7 +220,8 @@ fn worst_address(bits: u64) -> f64 {
     worst
 }
 
-/// The printed values come from another sample, so the bound is 1.5 times as large.
+/// Checks address errors for several word lengths. The printed errors come from another sample, so each limit is 1.5
+/// times as large.
 #[test]
 fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
     for (bits, printed) in [(8, 5.7), (10, 1.39), (12, 0.33), (14, 0.088), (16, 0.021)] {
@@ -238,7 +241,8 @@ fn case_30_when_a_pixel_lights_and_what_happened_before() {
     assert_eq!(scan.lights(320, 241, field), None, "an odd line");
 }
 
-/// With an ideal tracker, the error is the rotation between latch and light: f tan(200 deg/s x age).
+/// Checks the error with an ideal tracker. It is the head's rotation from reading the orientation to displaying the
+/// pixel: f tan(200 deg/s x age).
 #[test]
 fn case_31_a_pan_of_200_degrees_a_second() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
@@ -254,7 +258,8 @@ fn case_31_a_pan_of_200_degrees_a_second() {
     }
 }
 
-/// A17 demands an orientation less than 1 us before the first pixel, so a stage takes less than 38.46 ns.
+/// Checks statement A17 of the papers: the orientation is less than 1 us old at the first pixel. A stage must therefore
+/// take less than 38.46 ns.
 #[test]
 fn the_pipeline_is_shorter_than_a_microsecond() {
     assert_eq!(ArpTiming::PAPERS.depth().0, 650_000);
@@ -267,7 +272,8 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
     assert_eq!(ahead, [2, 3, 4, 4, 5, 5].map(|stages| 25_000 * stages));
 }
 
-/// Crates of boards do not depend on each other, but their numbers must agree.
+/// Checks that the scan equals that of the Pixel-Planes 5 frame buffer. Crates of boards do not depend on each other,
+/// but their numbers must agree.
 #[test]
 fn the_scan_is_that_of_the_frame_buffer() {
     let video = pxpl5_framebuffer::Video::new(pxpl5_framebuffer::VideoTiming::PAPERS).expect("valid");
@@ -282,9 +288,10 @@ fn the_scan_is_that_of_the_frame_buffer() {
     }
 }
 
-/// The half angle of a face has the tangent N/M: 90.2242 degrees for 512 texels and 1 guard texel.
+/// Checks angles. The half angle of a face has the tangent N/M, which gives 90.2242 degrees for 512 texels and 1 guard
+/// texel.
 ///
-/// An NTSC pixel of 60 degrees covers 0.1034 degrees in the middle.
+/// An NTSC pixel of a picture of 60 degrees covers 0.1034 degrees in the middle.
 #[test]
 fn angles_of_faces_and_pixels() {
     let degrees = 2.0 * GUARDED.tangent().atan().to_degrees();
@@ -315,7 +322,8 @@ fn the_life_of_a_pixel_in_the_guide() {
     assert_eq!(footprint.weights(4), [12, 180, 4, 60]);
 }
 
-/// Checks the same example on a display: the upper left pixel of a head that looks 30 degrees to the left.
+/// Checks the example of the guide on a complete display: the upper left pixel of a head that looks 30 degrees to the
+/// left.
 #[test]
 fn a_display_tells_the_texels_of_a_pixel() {
     let half = 15.0_f64.to_radians();

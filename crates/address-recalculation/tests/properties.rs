@@ -1,4 +1,4 @@
-//! Properties that hold for every direction, rotation and content.
+//! Tests of properties that hold for every direction, rotation and content.
 
 mod support;
 
@@ -23,7 +23,7 @@ fn degrees_between(a: Vector, b: Vector) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
-/// Interpolates a function on the faces in floating point, like an ideal display.
+/// Interpolates a function of direction on the faces in floating point, as an ideal display would.
 fn interpolated(geometry: FaceGeometry, direction: Vector, field: impl Fn(Vector) -> f64) -> f64 {
     let (face, [a, b]) = geometry.between_texels(direction).expect("a direction");
     let at = |column: f64, row: f64| {
@@ -37,7 +37,7 @@ fn interpolated(geometry: FaceGeometry, direction: Vector, field: impl Fn(Vector
     top * (1.0 - t) + bottom * t
 }
 
-/// Returns the position of a direction in the plane of a face, which the direction need not hit.
+/// Returns the position at which a direction meets the plane of a face. The position can lie outside the face.
 fn on_face(face: CubeFace, direction: Vector) -> [f64; 2] {
     let along = |axis: [i64; 3]| (0..3).map(|i| direction[i] * axis[i] as f64).sum::<f64>();
     [along(face.right()) / along(face.forward()), -along(face.up()) / along(face.forward())]
@@ -60,7 +60,8 @@ proptest! {
         prop_assert_eq!(geometry.texel(direction.map(|c| c * 2_f64.powi(exponent))), Some(texel));
     }
 
-    /// For a function that is linear on each face, rotation by lookup equals drawing for the new orientation.
+    /// Checks that looking up pixels for a new orientation equals drawing for it. The drawn function is linear on each
+    /// face.
     #[test]
     fn a_turn_shows_what_a_redraw_would(axes in prop::array::uniform4(-1.0..1.0_f64), x in 0_u32..640, y in 0_u32..480) {
         prop_assume!(axes.iter().map(|a| a * a).sum::<f64>() > 1e-3);
@@ -74,7 +75,8 @@ proptest! {
         prop_assert!((interpolated(GUARDED, seen, smooth) - smooth(seen)).abs() <= 7.69e-4);
     }
 
-    /// A rotation by 90 degrees maps texels to texels at the same position of another face, so words lose nothing.
+    /// Checks rotations that map axes to axes. A texel is mapped to the same position on another face, so hardware
+    /// words lose no precision.
     #[test]
     fn orientations_along_the_axes_are_exact(index in 0_usize..24, x in 0_u32..640, y in 0_u32..480) {
         let orientation = axis_aligned()[index];
@@ -103,7 +105,8 @@ fn every_texel_is_the_texel_of_its_middle() {
     }
 }
 
-/// The texels are half a texel from the edge on either side. Their spacing is 0.1121 of 0.1758 degrees.
+/// Checks that the nearest texels on both sides of a cube edge are half a texel away from it. They are 0.1121 degrees
+/// apart; texels in the middle of a face are 0.1758 degrees apart.
 #[test]
 fn texels_on_both_sides_of_an_edge_are_neighbours() {
     let geometry = FaceGeometry { texels: 512, guard: 0 };
@@ -123,7 +126,8 @@ fn texels_on_both_sides_of_an_edge_are_neighbours() {
     }
 }
 
-/// A guard texel lies on a neighbouring face, within half a texel's diagonal of its nearest texel.
+/// Checks that a guard texel shows the neighbouring face. Its nearest texel there is at most half a texel's diagonal
+/// away.
 #[test]
 fn guard_texels_show_what_the_neighbour_shows() {
     let geometry = FaceGeometry { texels: 128, guard: 2 };
@@ -138,7 +142,7 @@ fn guard_texels_show_what_the_neighbour_shows() {
     }
 }
 
-/// Half a texel in the middle of a face is f / 510 = 1.0868 pixels.
+/// Checks that half a texel in the middle of a face is f / 510 = 1.0868 pixels.
 #[test]
 fn the_nearest_texel_is_at_most_1_087_pixels_away_in_the_middle() {
     let focal = 320.0 / 30_f64.to_radians().tan();
@@ -163,16 +167,17 @@ fn look(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], beh
 
 /// Returns a colour that changes slowly with the direction.
 ///
-/// The slope is at most 100 x 6 per radian, so the curvature contributes at most 100 x 36 / 2 x (texel / 2)^2.
+/// Its slope is at most 100 x 6 per radian. The error of linear interpolation is therefore at most 100 x 36 / 2 x
+/// (texel / 2)^2.
 fn soft(direction: Vector) -> f64 {
     let d = unit(direction);
     128.0 + 50.0 * (6.0 * d.x + 2.0 * d.y).sin() + 50.0 * (5.0 * d.z).cos()
 }
 
-/// Bounds the error in hardware words.
+/// Checks that the error of a rotated picture in hardware words stays below a limit.
 ///
-/// Fractions rounded to 1/16 move the position by 1/32 texel along each axis. A texel in the middle covers 2/510 rad.
-/// The address adds 0.03 texels. Colours are rounded in the face and in the pixel.
+/// Fractions rounded to 1/16 move the position by at most 1/32 texel along each axis. A texel in the middle covers
+/// 2/510 rad. The address adds an error of 0.03 texels. Colours are rounded in the face and in the pixel.
 #[test]
 fn a_turned_picture_is_a_redraw_for_that_orientation() {
     let grey = |direction: Vector| soft(direction).round() as u32 * 0x01_01_01;
@@ -222,7 +227,8 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
     }
 }
 
-/// Lookups of one thread share a buffer. Faces of another size or with other contents must leave no traces.
+/// Checks that lookups, which share a buffer in each thread, do not affect each other. Earlier faces of another size or
+/// with other contents must leave no traces.
 #[test]
 fn a_look_does_not_depend_on_the_looks_before() {
     let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
@@ -254,8 +260,8 @@ fn behind_empty_texels_lies_the_background_memory_and_before_it_everything_else(
     assert_eq!(upper_half(&look(&config, &Orientation::IDENTITY, &near, Some(&behind))), (0x99, 0x99));
 }
 
-/// Rule of E2: objects distributed over memories, drawn from one position, equal a single memory with all objects, bit
-/// by bit.
+/// Checks the rule of experiment E2. Objects distributed over memories, all drawn from one position, give the same bits
+/// as a single memory with all objects.
 #[test]
 fn memories_together_show_what_one_memory_shows() {
     let timing = ArpTiming { face_texels: 128, ..ArpTiming::PAPERS };
@@ -277,7 +283,7 @@ fn memories_together_show_what_one_memory_shows() {
     }
 }
 
-/// A straight edge in the world, seen through the lens, is straight on a flat picture (RP93; E9).
+/// Checks that a straight edge of the world, seen through the lens, is straight on a flat picture (RP93; E9).
 ///
 /// The position of a texel on the flat picture does not depend on the lens.
 #[test]

@@ -1,4 +1,4 @@
-//! Host time of the view of one revolution of the head scene, and of the volume that is viewed.
+//! Host time of the view of one revolution of the head scene, and of drawing the viewed volume.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};

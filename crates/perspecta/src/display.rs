@@ -12,14 +12,15 @@ use pxpl5_wire::{Body, NodeId, PeriodNumber, Word};
 use spatialgl::pixel_of_word;
 use std::sync::LazyLock;
 
-/// Names of slices for [`Surface`], which needs static strings. The names are made once, for the greatest possible
+/// Names of slices for [`Surface`], which needs static strings. The names are made once, for the largest possible
 /// number of slices.
 static LABELS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let most = 4096;
     (0..most).map(|k| &*Box::leak(format!("slice-{k}").into_boxed_str())).collect()
 });
 
-/// The model of a Perspecta display. A period is a revolution, and a surface is a slice.
+/// The model of a Perspecta display. In terms of the display interface, a period is a revolution and a surface is a
+/// slice.
 #[derive(Debug)]
 struct Perspecta {
     config: PerspectaConfig,
@@ -146,7 +147,7 @@ impl DisplayConfig for PerspectaConfig {
         vec![("perspecta", self)]
     }
 
-    /// Returns 1: there is one volume for any number of eyes.
+    /// Returns 1, because there is one volume for any number of eyes.
     fn ports(&self, _pictures: usize) -> usize {
         1
     }

@@ -1,4 +1,4 @@
-//! Errors in the numbers and cameras of a user.
+//! Errors in the settings and cameras of a user.
 
 use thiserror::Error;
 
@@ -6,13 +6,13 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PerspectaError {
-    /// A number is out of range. The text names its path, the expected and the found value.
+    /// A number is out of range. The text names the path of the number, the expected and the found value.
     #[error("{0}")]
     Number(String),
     /// A number of a camera is out of range.
     #[error("view.{what}: expected {expected}, found {found}")]
     Camera {
-        /// Name of the wrong number.
+        /// Name of the number that is out of range.
         what: &'static str,
         /// Rule that the number breaks.
         expected: &'static str,

@@ -1,5 +1,5 @@
-//! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that code computes or
-//! counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone, and has no verdict.
+//! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that the code computes
+//! or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. It has no verdict.
 
 use crate::timing::PerspectaConfig;
 use parameters::Standing;
@@ -9,7 +9,7 @@ use spatialgl::{
     packed_word,
 };
 
-/// A number of the paper that is an input of the model, or that follows from its inputs by arithmetic alone.
+/// A number of the paper that is an input of the model, or that follows from inputs of the model by arithmetic alone.
 ///
 /// No run can give another value, so a definition is not compared with anything.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,11 +34,11 @@ pub struct Figure {
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
-    /// Printed or derived value. For "over" and "about" it is the middle or the end of the interval.
+    /// Printed or derived value. If the paper says "over" or "about", it is the middle or the end of the interval.
     pub published: f64,
-    /// Least and greatest value that agree with the figure.
+    /// Least and greatest computed value that count as agreement with the figure.
     pub interval: [f64; 2],
-    /// Value that this model computes.
+    /// Value of the figure that this model computes.
     pub computed: f64,
     /// Provenance of the published value: printed or derived.
     pub standing: Standing,
@@ -58,7 +58,7 @@ impl Figure {
     }
 }
 
-/// Returns a figure whose interval extends `half_digit` to both sides of the published value.
+/// Returns a figure whose interval of agreement extends by `half_digit` to both sides of the published value.
 const fn row(
     id: &'static str,
     statement: &'static str,
@@ -81,7 +81,7 @@ const fn row(
 /// Least and greatest number of months in which the performance of GPUs doubles (published, P20).
 pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 
-/// Months in which the performance of CPUs doubles (published, P20).
+/// Number of months in which the performance of CPUs doubles (published, P20).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
 const P: Standing = Standing::Published;
@@ -97,15 +97,15 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. Printed numbers have an id that begins with P.
+/// Returns a definition. It is printed if its id begins with P, and otherwise derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
 }
 
-/// Bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
+/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
 const GPU_PIXEL_BITS: f64 = 32.0;
 
-/// Bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
+/// Number of bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
 const PROJECTOR_PIXEL_BITS: f64 = 3.0;
 
 fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
@@ -141,7 +141,7 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns P20, and D12: the CPU's share of the time in 18 months, if CPU and GPU take equal times today.
+/// Returns figures P20 and D12. D12 is the CPU's share of the time in 18 months, if CPU and GPU take equal times today.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
@@ -155,7 +155,7 @@ fn doubling() -> Vec<Definition> {
     ]
 }
 
-/// Returns figures that the model computes without drawing: its trigonometry, its bins and the thickness of its slabs.
+/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slabs.
 #[must_use]
 pub fn formulas() -> Vec<Figure> {
     let config = PerspectaConfig::PAPERS;
@@ -165,7 +165,7 @@ pub fn formulas() -> Vec<Figure> {
     figures
 }
 
-/// Compares the counts of a volume with the paper's statements about most scenes.
+/// Returns figures that compare the counts of a volume with the paper's statements about most scenes.
 #[must_use]
 pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     let occupancy = Figure {
@@ -177,8 +177,8 @@ pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     vec![occupancy, binned]
 }
 
-/// Returns figures about the words that the packing functions make of white pixels: ten pixels per word (P10), and the
-/// waste of both packings (D6).
+/// Returns figures from the packed words of white pixels: ten pixels per word (P10), and the percentage of unused bits
+/// in both packings (D6).
 #[must_use]
 pub fn packing() -> Vec<Figure> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
@@ -217,8 +217,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the disc. This mean is the area of a slice's slab within the
-/// disc, times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the disc. This mean is the area of one slice's slab within
+/// the disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;
@@ -238,7 +238,8 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Compares with the printed numbers of the paper, and with D numbers computed by hand for 396 x 768 x 768 pixels.
+    /// Checks the definitions against the printed numbers of the paper, and against D numbers computed by hand for 396
+    /// x 768 x 768 pixels.
     #[test]
     fn definitions_are_the_papers_numbers() {
         let all = definitions();

@@ -9,19 +9,19 @@
 //! # Behaviour
 //!
 //! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the store that is not shown. A map blanks the tiles that are not sent. A swap request
-//!   takes effect at a later strobe 0, and not before all announced tiles have arrived. A partly written slice is
-//!   therefore never shown.
+//!   ([`volume_messages`]) in the frame store that is not shown. A map makes the tiles dark that are not sent. A swap
+//!   request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written slice
+//!   is therefore never shown.
 //! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_display::Display), a period is a
 //!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
-//! - The viewer adds up all lit pixels of one revolution as points of light at their voxels, in integers. Nothing is
-//!   hidden.
+//! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel. The sums are
+//!   integers. No voxel hides another one.
 //!
 //! # Numbers
 //!
-//! [`PerspectaConfig`] has the numbers of the paper, and assumed values with ranges where the paper gives none.
-//! [`figures`] compares the paper's figures with this model.
+//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, it has assumed values with
+//! ranges. [`figures`] compares the paper's figures with this model.
 //!
 //! # Not modelled
 //!

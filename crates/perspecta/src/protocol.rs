@@ -5,9 +5,9 @@
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map must blank them (derived: otherwise the volume before the last would stay
-//! visible). The words are those of the ring, at most [`MAX_MESSAGE_WORDS`] per message. Everything goes to the store
-//! that is not shown.
+//! Empty tiles are not sent, so the map must make them dark. This rule is derived: otherwise the tiles of the volume
+//! before the last would stay visible. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] per message. All
+//! messages write to the store that is not shown.
 
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use spatialgl::{BitPlanes, Size, TileGrid, Tiling};
@@ -19,15 +19,15 @@ const MAP: Word = 0x0050_4D41;
 /// First word of a tile.
 const TILE: Word = 0x0050_5449;
 
-/// Number of words before the map's bits or the tile's pixels.
+/// Number of words in a message before the map's bits or the tile's pixels.
 const HEADER_WORDS: usize = 3;
 
 /// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
-    /// A map of the tiles that will arrive for these slices.
+    /// A map of the tiles that will arrive for these slices. Bit i of `bits` stands for tile i.
     Map { first: u32, slices: u32, tile: u32, bits: &'a [Word] },
-    /// The pixels of a tile of one slice.
+    /// The pixels of tile `number` of one slice.
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },
 }
 
@@ -45,8 +45,8 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     }
 }
 
-/// Returns the messages of a volume, batch by batch: the map, then the tiles, slice by slice. Returns `None` if tiles
-/// are switched off, too large for a message, or more than 65,536 per slice.
+/// Returns the messages of a volume, batch by batch: first the map, then the tiles, slice by slice. Returns `None` if
+/// there are no tiles, or if they are too large for a message or more than 65,536 per slice.
 #[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
     let batches = batch_messages(planes, tiling, planes.slices())?;
@@ -55,7 +55,7 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
     Some(batches.into_iter().flat_map(in_order).collect())
 }
 
-/// The messages of a batch of slices.
+/// The messages of one batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
     /// Map of the tiles that will arrive, sent before these tiles.
@@ -67,7 +67,7 @@ pub struct BatchMessages {
 /// The message of one tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
-    /// Index of the slice in the turn.
+    /// Index of the slice in the revolution.
     pub slice: u32,
     /// Index of the tile in the slice, row by row from the top left.
     pub tile: u32,
@@ -75,8 +75,8 @@ pub struct TileMessage {
     pub words: Arc<[Word]>,
 }
 
-/// Returns the messages of the first `slices` slices, batch by batch. The last batch may be short. Returns `None` in
-/// the same cases as [`volume_messages`].
+/// Returns the messages of the first `slices` slices, batch by batch. The last batch may have fewer slices. Returns
+/// `None` in the same cases as [`volume_messages`].
 #[must_use]
 pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option<Vec<BatchMessages>> {
     let tile = tiling.tile?;
@@ -127,7 +127,7 @@ fn has_light(words: &[Word], size: Size, grid: &TileGrid, number: u32) -> bool {
     rows(size, grid, number).any(|row| words[row].iter().any(|word| *word != 0))
 }
 
-/// Returns the ranges of a slice's words that make up a tile, row by row.
+/// Returns the parts of a slice's words that make up a tile, one range of indices for each row.
 pub(crate) fn rows(size: Size, grid: &TileGrid, number: u32) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
     let [left, top, right, bottom] = grid.rectangle(number);
     let row_words = size[0] / 8;

@@ -7,7 +7,7 @@ use spatialgl::{Size, Tiling};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice, shared until they are written.
+/// The words of one slice. Both stores share them until one store writes to them.
 type Slice = Arc<Vec<Word>>;
 
 /// Two volumes of N slices.
@@ -19,23 +19,23 @@ pub(crate) struct FrameStore {
     size: Size,
     volumes: [Vec<Slice>; 2],
     shown: usize,
-    /// Slices that were shown until the last tick.
+    /// Slices of the store that was visible until the last tick.
     scanned: Vec<Slice>,
-    /// Slice, tile and tile size of each announced tile that has not arrived.
+    /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// Arrival time and buffer of the last swap request.
+    /// Arrival time of the last swap request, and the buffer that it requested.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
 
-/// The meaning of a message for the store.
+/// The effect of a message on the frame store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StoreReceipt {
-    /// The last announced tile of a slice.
+    /// The message was the last announced tile of the slice with this index.
     SliceComplete(u32),
-    /// A map, a tile or a swap request.
+    /// The message was a map, a swap request, or a tile that does not complete its slice.
     Part,
-    /// A message that the store cannot use.
+    /// The store cannot use the message, for this reason.
     Fault(&'static str),
 }
 
@@ -73,7 +73,7 @@ impl FrameStore {
         StoreReceipt::Part
     }
 
-    /// Blanks the tiles of these slices, and notes the tiles that will arrive.
+    /// Makes the tiles of these slices dark, and notes which tiles will arrive.
     fn announce(&mut self, first: u32, slices: u32, tile: u32, bits: &[Word]) -> StoreReceipt {
         let Some(tiling) = tiling(tile) else { return StoreReceipt::Fault("tiles of a size that is no multiple of 8") };
         let grid = tiling.grid(self.size);
@@ -116,7 +116,7 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// Handles strobe 0: shows the store that was requested before (not at) this instant, if all its tiles have
+    /// Handles strobe 0. Shows the store that was requested before (not at) this instant, if all its tiles have
     /// arrived. Returns the buffer if it was swapped.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
@@ -126,12 +126,12 @@ impl FrameStore {
         Some(buffer)
     }
 
-    /// Returns a slice of the store that is shown.
+    /// Returns the words of a slice of the visible store.
     pub(crate) fn shown(&self, slice: usize) -> Option<&[Word]> {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// Returns a slice that was shown until the last tick.
+    /// Returns the words of a slice of the store that was visible until the last tick.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

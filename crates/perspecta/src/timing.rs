@@ -1,4 +1,4 @@
-//! All numbers of the display.
+//! All parameters of the display, with their sources.
 
 use crate::error::PerspectaError;
 use parameters::ParameterTable;
@@ -16,15 +16,15 @@ parameters::parameter_table! {
         height: 768, "lines", Assumed, 256..=2048 in 1..=4096, "the paper gives no value; 768 in SPIE 4297 and SPIE 5664";
         /// Revolutions of the screen per minute.
         spin_rpm: 900, "1/min", Assumed, 600..=900 in 1..=1_000_000, "the paper gives no value; 600 in SPIE 4297, 730 and 900 in the press";
-        /// Percentage of a strobe's interval in which it is lit.
+        /// Percentage of the interval between two strobes in which the projector is lit.
         lit_percent: 100, "%", Assumed, 1..=100 in 1..=100, "the paper gives no value; a lower value only makes the display darker";
-        /// Time to transfer one word at the port.
+        /// Time to transfer one word at the ring port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel of the ring, the same as other displays";
     }
 }
 
 impl PerspectaConfig {
-    /// Checks that every number is within its limits, that the number of slices is even, and that a line consists of
+    /// Checks that every parameter is within its limits, that the number of slices is even, and that a line consists of
     /// whole words.
     ///
     /// # Errors
@@ -50,8 +50,8 @@ impl PerspectaConfig {
         Clock::new(60_000_000_000_000, self.spin_rpm).expect("at most a million revolutions a minute")
     }
 
-    /// Returns the instant at which strobe `slice` of a revolution lights, and its duration. The instant is (n + k / N)
-    /// / f. The duration is `lit_percent` of the interval between strobes.
+    /// Returns the instant at which strobe `slice` of a revolution begins to light, and how long it lights. The instant
+    /// is (n + k / N) / f. The duration is `lit_percent` of the interval between strobes.
     #[must_use]
     pub fn strobe(&self, revolution: u64, slice: u64) -> (Time, Span) {
         let begin = self.instant(revolution, slice);
@@ -64,20 +64,20 @@ impl PerspectaConfig {
         Time((picoseconds / u128::from(self.slices * self.spin_rpm)) as u64)
     }
 
-    /// Returns the volumes per second that an eye sees: two per revolution, because the screen passes every plane twice
-    /// (D2).
+    /// Returns the number of volumes per second that an eye sees. It is two per revolution, because the screen passes
+    /// every plane twice (D2).
     #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0
     }
 
-    /// Returns the strobes per second: slices times revolutions.
+    /// Returns the number of strobes per second: slices times revolutions per second.
     #[must_use]
     pub fn strobe_hz(&self) -> f64 {
         self.slices as f64 * self.spin_rpm as f64 / 60.0
     }
 
-    /// Returns the same screen as a display of the pipeline, with a clip and a projection.
+    /// Returns this display in the form that the rendering pipeline needs, with a clip and a projection.
     ///
     /// # Errors
     ///

@@ -1,28 +1,30 @@
-//! The view of an eye at any position during one revolution: the sum of all lit pixels of all strobes.
+//! The view of an eye at any position during one revolution: the sum of the light of all lit pixels in all strobes.
 
 use crate::error::PerspectaError;
 use image::{Rgb, RgbImage};
 use spatialgl::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_cos_of_turn};
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel: 256 x 256, so that bilinear shares are integers.
+/// Units of light of one lit pixel in one strobe. With 256 x 256 units, the shares of four neighbouring picture pixels
+/// are integers.
 const FULL: u64 = 1 << 16;
 
-/// Number of slices that one task adds up before it adds its sums to the total.
+/// Number of slices whose light one task sums before it adds this sum to the total.
 const SLICES_PER_TASK: u32 = 33;
 
-/// An eye and its picture. The eye looks at the middle of the display, and y points downwards in the image.
+/// The position of an eye before the display, and the size of its picture. The eye looks at the middle of the display,
+/// and y points downwards in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
     /// Elevation of the eye above the horizon, degrees.
     pub elevation_deg: f64,
-    /// Distance of the eye from the middle of the display, pixels of the display.
+    /// Distance of the eye from the middle of the display, in pixels of the display.
     pub distance: f64,
-    /// Focal length, pixels of the picture.
+    /// Focal length of the picture, in pixels of the picture.
     pub focal: f64,
-    /// Width and height of the picture, pixels.
+    /// Width and height of the picture, in pixels.
     pub size: Size,
 }
 
@@ -34,7 +36,7 @@ impl Camera {
         Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }
     }
 
-    /// Checks that the numbers describe an eye outside of a display with slices of this size.
+    /// Checks that the camera is outside a display with slices of this size, and that its other numbers are valid.
     ///
     /// # Errors
     ///
@@ -57,14 +59,15 @@ impl Camera {
         Ok(())
     }
 
-    /// Returns the axes of the eye: to the right, up, and from the middle of the display to the eye.
+    /// Returns the axes of the eye as unit vectors: to the right, upwards, and from the middle of the display to the
+    /// eye.
     fn axes(&self) -> [[f64; 3]; 3] {
         let (sin_a, cos_a) = libm::sincos(self.azimuth_deg.to_radians());
         let (sin_e, cos_e) = libm::sincos(self.elevation_deg.to_radians());
         [[cos_a, 0.0, -sin_a], [-sin_e * sin_a, cos_e, -sin_e * cos_a], [cos_e * sin_a, sin_e, cos_e * cos_a]]
     }
 
-    /// Returns the position of a world point in the picture, pixels from the top left.
+    /// Returns the position of a world point in the picture, in pixels from the top left.
     #[must_use]
     pub fn project(&self, world: [f64; 3]) -> [f64; 2] {
         let [right, up, back] = self.axes().map(|axis| dot(axis, world));
@@ -78,13 +81,14 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The part of a volume to show, and the way of showing it.
+/// Options of a view: the part of the volume to show, and how brightness depends on the angle of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewOptions {
-    /// Range of angles around the axis, degrees from +x to +z, in which nothing is shown (a cutaway).
+    /// Range of angles around the axis in which nothing is shown (a cutaway), in degrees from +x to +z. `None` shows
+    /// everything.
     pub cut_deg: Option<[f64; 2]>,
-    /// True if the brightness of a pixel is proportional to |view . e_s|, the cosine of the angle between screen and
-    /// eye.
+    /// True if brightness depends on the angle of the screen. The factor is |view . e_s|, the cosine of the angle
+    /// between the direction of view and the screen's normal.
     pub lambert: bool,
     /// Angle of slice 0 from +x towards +z, degrees.
     pub phase_deg: f64,
@@ -92,7 +96,7 @@ pub struct ViewOptions {
 }
 
 impl ViewOptions {
-    /// Returns the angle of a slice in degrees from +x to +z, with its sine and cosine.
+    /// Returns the angle of slice `k` in degrees from +x to +z, with its sine and cosine.
     fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
         let is_forward = self.rotation == Rotation::XToZ;
         let steps = if is_forward { i64::from(k) } else { -i64::from(k) };
@@ -103,11 +107,12 @@ impl ViewOptions {
     }
 }
 
-/// The light of a picture, in integer units that add up exactly in any order and on any number of threads.
+/// The light that reaches each pixel of a picture, in integer units. Integer sums are exact in any order and on any
+/// number of threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Light {
     size: Size,
-    /// Red, green and blue of each pixel.
+    /// Light of each pixel of the picture: red, green and blue.
     sums: Vec<[u64; 3]>,
 }
 
@@ -116,7 +121,8 @@ impl Light {
         Self { size, sums: vec![[0; 3]; size[0] as usize * size[1] as usize] }
     }
 
-    /// Returns all light of the picture by channel, in units of a lit pixel of a single strobe.
+    /// Returns the sum of the light over the picture for each channel. The unit is the light of one lit pixel in one
+    /// strobe.
     #[must_use]
     pub fn total(&self) -> [f64; 3] {
         let mut sums = [0.0; 3];
@@ -128,7 +134,7 @@ impl Light {
         sums
     }
 
-    /// Returns the exposure at which the fraction `share` (0 to 1) of the lit pixels stays below white.
+    /// Returns the exposure at which a fraction `share` (0 to 1) of the lit picture pixels stays below white.
     #[must_use]
     pub fn exposure(&self, share: f64) -> f64 {
         let lit = self.sums.iter().map(|pixel| pixel[0].max(pixel[1]).max(pixel[2])).filter(|value| *value > 0);
@@ -141,7 +147,7 @@ impl Light {
         255.0 * FULL as f64 / *value as f64
     }
 
-    /// Returns the picture. `exposure` is the number of steps, of 255, for one lit pixel of one strobe.
+    /// Returns the picture. `exposure` is the brightness, in steps of 1/255, that one lit pixel gives in one strobe.
     #[must_use]
     pub fn picture(&self, exposure: f64) -> RgbImage {
         let mut picture = RgbImage::new(self.size[0], self.size[1]);
@@ -157,7 +163,8 @@ impl Light {
         }
     }
 
-    /// Adds a point of light bilinearly. `levels` are 0 to 255, and `weight` is 0 to 256.
+    /// Adds a point of light, divided among the four nearest picture pixels. `levels` are 0 to 255, and `weight` is 0
+    /// to 256.
     #[inline(always)]
     fn splat(&mut self, [x, y]: [f64; 2], levels: [u64; 3], weight: u64) {
         let left = (x - 0.5).floor();
@@ -178,7 +185,7 @@ impl Light {
     }
 }
 
-/// Returns the light of one revolution of a volume as the display shows it, halftoned.
+/// Returns the light of one revolution of a volume, as the display shows it after halftoning.
 ///
 /// # Errors
 ///
@@ -204,8 +211,8 @@ pub fn view_planes(
     })
 }
 
-/// Returns the light before halftoning, with all 256 levels. A comparison with [`view_planes`] shows the cost of the
-/// dither.
+/// Returns the light of one revolution before halftoning, with all 256 levels. A comparison with [`view_planes`] shows
+/// the loss by the dither.
 ///
 /// Returns `None` if the frame was made without its colours.
 ///
@@ -232,7 +239,8 @@ pub fn view_undithered(
     Ok(Some(light))
 }
 
-/// A function that calls its argument with column, row and levels of every lit pixel of a slice.
+/// A function that receives the index of a slice and a callback. It calls the callback with column, row and levels of
+/// every lit pixel.
 type EachPixel<'a> = dyn Fn(u32, &mut dyn FnMut(u32, u32, [u64; 3])) + Sync + 'a;
 
 fn sum(
@@ -259,10 +267,11 @@ fn sum(
     Ok(total.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// The geometry of a strobe, converted to the coordinates of the eye.
+/// The geometry of the screen during one strobe, in the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
-    /// Vector of one pixel to the right (`across`) or up (`upward`), as right, up and back in the eye's axes.
+    /// Vector of one screen pixel to the right (`across`) or upwards (`upward`), as right, up and back along the eye's
+    /// axes.
     across: [f64; 3],
     upward: [f64; 3],
     /// Normal of the screen, in the eye's axes.
@@ -271,7 +280,7 @@ struct Strobe {
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// True for each half of the screen (u < 0, u >= 0) that is left out.
+    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides it.
     cut: [bool; 2],
 }
 
@@ -308,21 +317,23 @@ impl Strobe {
         light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
     }
 
-    /// Returns the cosine |view . e_s| between screen and eye in steps of 1/256.
+    /// Returns the absolute cosine |view . e_s| of the angle between the direction of view and the screen's normal, in
+    /// steps of 1/256.
     fn facing(&self, to_eye: [f64; 3]) -> u64 {
         let length = dot(to_eye, to_eye).sqrt();
         (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64
     }
 }
 
-/// Returns true if an angle lies in a range of angles that may wrap at 360 degrees.
+/// Returns true if an angle lies in the range `cut`. The range may wrap at 360 degrees.
 fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
     let Some([from, to]) = cut else { return false };
     let past = (angle - from).rem_euclid(360.0);
     to - from >= 360.0 || past < (to - from).rem_euclid(360.0)
 }
 
-/// Returns `frames` pictures of a turn around a volume, starting from the camera's own position, all with one exposure.
+/// Returns `frames` pictures from viewpoints on a circle around a volume. The first viewpoint is the camera's own, and
+/// all pictures have one exposure.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! The display on the ring: times of light, and a test that partly written volumes are never shown.
+//! Tests of the display on the ring: the instants at which slices are displayed, and volumes that have arrived only
+//! partly.
 
 use perspecta::{PerspectaConfig, volume_messages};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
@@ -51,7 +52,7 @@ fn shows(display: &dyn Display, planes: &BitPlanes) -> bool {
     })
 }
 
-/// Strobe k of revolution n lights at (n + k/N) / f.
+/// Checks that strobe k of revolution n lights at (n + k/N) / f.
 #[test]
 fn each_slice_lights_at_its_own_angle() {
     let display = build(&PerspectaConfig::PAPERS);
@@ -138,7 +139,7 @@ fn a_slice_half_written_is_never_shown() {
     assert!(shows(&*display, &planes));
 }
 
-/// Tiles that are not sent are dark, whatever the store held before.
+/// Checks that tiles that are not sent are dark, whatever the store held before.
 #[test]
 fn a_map_blanks_what_is_not_sent() {
     let mut display = build(&CONFIG);

@@ -1,4 +1,5 @@
-//! The view of an eye during a revolution: positions from formulas, sums from counts, and reference pictures.
+//! Tests of the view of an eye during a revolution: positions from formulas, sums of light from counts, and reference
+//! pictures.
 
 use image::RgbImage;
 use perspecta::{Camera, PerspectaConfig, PerspectaError, ViewOptions, film, view_planes, view_undithered};
@@ -22,7 +23,7 @@ fn one_pixel(slice: u32, x: u32, y: u32) -> BitPlanes {
     planes
 }
 
-/// Returns the centre of all light of a picture, pixels.
+/// Returns the centre of all light in a picture, in pixels.
 fn centre(picture: &RgbImage) -> [f64; 2] {
     let mut sums = [0.0; 3];
     for (x, y, pixel) in picture.enumerate_pixels() {
@@ -54,7 +55,7 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
     }
 }
 
-/// Slice k is at the angle phase + k d, or phase - k d on a screen that turns the other way.
+/// Checks the angle of slice k: phase + k d, or phase - k d on a screen that turns the other way.
 #[test]
 fn phase_and_direction_of_the_turn_place_a_slice() {
     let camera = case_8(40.0, 25.0);
@@ -70,7 +71,8 @@ fn phase_and_direction_of_the_turn_place_a_slice() {
     }
 }
 
-/// Strobes k and k + 198 show the same plane from opposite sides, so the same voxel is at the mirrored pixel.
+/// Checks that strobes k and k + 198 show the same plane from opposite sides, so that the same voxel is at the mirrored
+/// pixel.
 #[test]
 fn the_second_half_turn_shows_the_same_voxels() {
     let camera = case_8(40.0, 25.0);
@@ -134,7 +136,7 @@ fn the_light_does_not_depend_on_threads_and_is_that_of_all_lit_voxels() {
     assert!(most <= frame.planes.lit_voxels() as f64 && most > 0.5 * frame.planes.lit_voxels() as f64);
 }
 
-/// Dither preserves the light: on average a channel of value c lights c/255 of its pixels.
+/// Checks that dither preserves the light: on average, a channel of value c lights c/255 of its pixels.
 #[test]
 fn halftoned_and_undithered_light_agree() {
     for strobes in [Strobes::Each, Strobes::Mirror] {
@@ -178,7 +180,7 @@ fn cameras_that_see_nothing_are_named() {
     assert!(dark.picture(dark.exposure(0.98)).pixels().all(|pixel| pixel.0 == [0; 3]));
 }
 
-/// Compares with the reference picture, or writes the reference picture if `PXPL5_UPDATE_GOLDEN` is set.
+/// Compares a picture with the reference picture, or writes the reference picture if `PXPL5_UPDATE_GOLDEN` is set.
 fn golden(name: &str, picture: &RgbImage) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
     if std::env::var_os("PXPL5_UPDATE_GOLDEN").is_some() {
@@ -189,8 +191,8 @@ fn golden(name: &str, picture: &RgbImage) {
     assert!(*picture == expected, "{name} is another picture");
 }
 
-/// Compares the view, a cutaway and the view without dither with reference pictures. With libm and integers, the bits
-/// are the same on every host.
+/// Compares the view, a cutaway and the view without dither with reference pictures. The code uses libm and integers,
+/// so the bits are the same on every host.
 #[test]
 fn the_mig_looks_as_it_did() {
     let frame = mig(Strobes::Each);

@@ -1,4 +1,4 @@
-//! Comparison of all policies and warps over one walk through one scene.
+//! Comparison of all policies and kinds of warping during one walk through one scene.
 
 use crate::experiment::WalkOutcome;
 use crate::plan::Plan;
@@ -7,7 +7,7 @@ use crate::tears::Percentiles;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
-/// Name and settings of each variant. All other settings come from the plan.
+/// Name and settings of each variant. A variant takes all other settings from the plan.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),
@@ -26,28 +26,28 @@ pub const fn variant_count() -> u64 {
     VARIANTS.len() as u64
 }
 
-/// Cost and image error of one variant.
+/// Cost and image error of one combination of policy, segmentation and warping.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparedRow {
-    /// Name of the variant: policy, segmentation, warp.
+    /// Name of the variant: its policy, segmentation and warping.
     pub variant: &'static str,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
     /// Segments drawn per second.
     pub draws_per_s: f64,
     /// Triangles drawn per second.
     pub triangles_per_s: f64,
-    /// Draws saved relative to drawing everything in every frame, in percent.
+    /// Percentage of draws saved, relative to drawing everything in every frame.
     pub saved_percent: f64,
-    /// Distance between the eye and the position a memory was drawn from, mean over memories, in mm.
+    /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
-    /// Widths of tears as drawn, in texels. Null in JSON if no memories meet in a cut.
+    /// Widths of the displayed tears, in texels. Null in JSON if no memories meet in a cut.
     pub tears: Option<Percentiles>,
     /// Angles by which warping moves vertices, in texels. Null in JSON without warping.
     pub stretch: Option<Percentiles>,
-    /// Number of new assignments of cells to memories, or of objects that changed memories.
+    /// Number of new assignments of cells to memories, or number of times that objects changed memories.
     pub changes: u64,
-    /// Retraces at which an update was incomplete, summed over all memories.
+    /// Number of retraces at which an update was incomplete, summed over all memories.
     pub missed: u64,
 }
 
@@ -56,9 +56,9 @@ pub struct ComparedRow {
 pub struct ArpComparison {
     pub schema: &'static str,
     pub scene: String,
-    /// Length of the walk in frames.
+    /// Length of the viewer's walk, in frames.
     pub frames: u64,
-    /// Speed of the walk in m/s.
+    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Results of the variants that succeeded.
     pub rows: Vec<ComparedRow>,
@@ -66,7 +66,8 @@ pub struct ArpComparison {
     pub failed: Vec<(&'static str, String)>,
 }
 
-/// Walks with every variant. Calls `finished` with the number of variants done and the total.
+/// Simulates the walk with every variant. Calls `finished` with the number of finished variants and the number of all
+/// variants.
 #[must_use]
 pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpComparison {
     let mut comparison = ArpComparison {

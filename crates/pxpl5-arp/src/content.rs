@@ -6,21 +6,22 @@ use cube_faces::{CubeView, Drawing};
 use glam::DVec3;
 use priority_rendering::{CellAssignment, PriorityError, RegionWarp};
 
-/// The data a display memory was drawn from. Its faces can be drawn later when they are read.
+/// The data from which a display memory is drawn. Its cube faces are drawn later, when they are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Content {
-    /// Position of the eye.
+    /// Position of the eye from which the memory is drawn.
     pub eye: DVec3,
     /// Frame at whose start the eye had this position.
     pub frame: u64,
     /// Indices of the segments in the memory.
     pub segments: Vec<usize>,
-    /// Displacement of vertices, if any: the warp, the assignment of cells, and the number of this memory.
+    /// Displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the index of this
+    /// memory.
     pub warp: Option<(RegionWarp, CellAssignment, usize)>,
 }
 
 impl Content {
-    /// Returns the position at which a vertex is drawn, after warping.
+    /// Returns the position at which a vertex of the scene is drawn after warping.
     #[must_use]
     pub fn place(&self, vertex: DVec3) -> DVec3 {
         self.warp
@@ -46,7 +47,7 @@ impl Content {
     }
 }
 
-/// Returns the warp of a memory towards its slower neighbour, between the two eye positions `places`.
+/// Returns the warp that joins a memory to the next slower one. `places` are the two eye positions.
 pub(crate) fn warp(
     settings: &crate::settings::Settings,
     dealing: &CellAssignment,
@@ -57,7 +58,7 @@ pub(crate) fn warp(
     Ok(Some((warp, *dealing, memory)))
 }
 
-/// Returns the angle between two directions in radians. The formula is accurate for small angles too.
+/// Returns the angle between two directions in radians. The formula is also accurate for small angles.
 pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

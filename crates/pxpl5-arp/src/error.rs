@@ -32,7 +32,7 @@ pub enum ExperimentError {
     /// The walk is impossible, for example because its path is too short.
     #[error(transparent)]
     Motion(#[from] SettingError),
-    /// The source's rate is not positive.
+    /// The rate of the renderer is not positive.
     #[error("source.triangles_per_s: expected more than 0, found {0}")]
     Rate(f64),
     /// No setting has the requested path.

@@ -1,4 +1,4 @@
-//! A complete experiment: a walk through a scene, and the view at its end.
+//! A complete experiment: a viewer's walk through a scene, and the view at its end.
 
 use crate::error::ExperimentError;
 use crate::hall::{path_of, scaled};
@@ -14,41 +14,41 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::motion::Walk;
 
-/// A report together with the scene and settings of the walk.
+/// A report of a viewer's walk, with the scene and the settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkReport {
-    /// Counters of the walk, and results of the view at its end.
+    /// Counters of the viewer's walk, and results of the view at its end.
     #[serde(flatten)]
     pub report: Report,
     pub scene: String,
-    /// Number of triangles in all segments.
+    /// Number of triangles in the scene after cutting: the sum over all segments.
     pub triangles: u64,
     /// Number of segments into which cells cut the scene.
     pub segments: u64,
-    /// Length of the walk in frames of the fastest memory.
+    /// Length of the viewer's walk, in frames of the fastest memory.
     pub frames: u64,
-    /// Speed of the walk in m/s.
+    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Settings that were given explicitly, by path.
     pub settings: BTreeMap<String, String>,
 }
 
-/// Inputs and results of a completed walk.
+/// Inputs and results of a completed walk of the viewer.
 #[derive(Clone, Debug)]
 pub struct WalkOutcome {
-    /// The scene after cutting.
+    /// The scene after it was cut at the borders of cells.
     pub world: World,
     /// Path through the scene.
     pub path: Walk,
     pub settings: Settings,
-    /// Counters of the walk.
+    /// Counters of the viewer's walk.
     pub tally: WalkTally,
-    /// Report of the walk, including a view along the path at its end.
+    /// Report of the viewer's walk, including a view along the path at its end.
     pub report: WalkReport,
 }
 
 impl WalkOutcome {
-    /// Runs a walk. Calls `finished` with the number of frames done and the total.
+    /// Runs a walk. Calls `finished` with the number of finished frames and the number of all frames.
     ///
     /// # Errors
     ///

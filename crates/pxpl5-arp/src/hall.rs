@@ -1,4 +1,4 @@
-//! Scaling of a hall, and routes through it.
+//! Scaling of a hall, and routes of the viewer through it.
 
 use crate::error::ExperimentError;
 use glam::{DVec3, Vec3};
@@ -10,14 +10,14 @@ use tracking::motion::Walk;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Route {
-    /// The path of the scene.
+    /// The path that belongs to the scene.
     #[default]
     Scene,
-    /// Back and forth along z through the middle of the scene.
+    /// A path back and forth along z through the middle of the scene.
     Straight,
-    /// Back and forth from corner to corner.
+    /// A path back and forth between two opposite corners.
     Diagonal,
-    /// Around the middle, halfway to the walls.
+    /// A path around the middle, halfway between the middle and the walls.
     Round,
 }
 
@@ -34,7 +34,7 @@ const MARGIN: f64 = 0.015;
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] if the scene has no path of its own, which defines the height of the eye.
+/// [`ExperimentError::Scene`] if the scene has no path of its own. The scene's path defines the height of the eye.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
@@ -92,7 +92,8 @@ mod tests {
     use super::*;
     use pxpl5_scene::builtin;
 
-    /// The built-in gallery is 40 m wide and 4 m high. Its path begins at (-16, -15).
+    /// Checks that a scaled gallery keeps its heights. The built-in gallery is 40 m wide and 4 m high, and its path
+    /// begins at (-16, -15).
     #[test]
     fn a_scaled_hall_keeps_its_height_and_its_eyes() {
         let scene = builtin("gallery").expect("built in");

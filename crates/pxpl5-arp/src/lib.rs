@@ -8,15 +8,17 @@
 //!
 //! # Behaviour
 //!
-//! - [`Plan`] holds settings by path (`priority.cell_m=5`). Settings that are not given follow from the others.
+//! - [`Plan`] holds settings by path (`priority.cell_m=5`). Settings that are not given depend on the others.
 //! - [`World`] cuts a scene at the borders of cells, once.
-//! - [`Simulation::frame`] asks the policy which memories are due for a position of the eye, and passes the work to the
-//!   source.
-//! - An ideal source draws within the same frame. A timed source serves memories in ascending order. It shows complete
-//!   updates in the next frame and counts incomplete ones.
-//! - A memory holds the data it is drawn from ([`Content`]). Its faces are drawn only when they are read ([`Faces`]).
+//! - [`Simulation::frame`] asks the policy which memories are due for an update at a position of the eye, and passes
+//!   the work to the renderer.
+//! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order. It
+//!   shows complete updates in the next frame and counts incomplete ones.
+//! - A memory holds the data from which it is drawn ([`Content`]). Its faces are drawn only when they are read
+//!   ([`Faces`]).
 //! - [`walk()`] counts the updates, draws and tears of a whole walk. [`Report`] writes them as JSON.
-//! - [`WalkOutcome`] holds the results of one plan. [`compare()`] walks with every policy and warp.
+//! - [`WalkOutcome`] holds the results of one plan. [`compare()`] simulates a walk with every policy and kind of
+//!   warping.
 //! - [`figures`] compares the papers' figures with the simulated ones. [`pictures`] draws pictures.
 //!
 //! Units are metres, seconds and radians unless a name says otherwise. A frame is 1/60 s. Results are bit-identical on
@@ -24,9 +26,9 @@
 //!
 //! # Not here
 //!
-//! Trackers and the host: the eye's position is known at the start of each frame, and its orientation at the latch.
-//! Latencies begin there, while latencies of `pxpl5 run` include a tracker and a host. Pixel-Planes 5 is not available
-//! as a source.
+//! Trackers and the host. The eye's position is known at the start of each frame. The head's orientation is known when
+//! the display reads it. Latencies begin at these instants, while latencies of `pxpl5 run` include a tracker and a
+//! host. Pixel-Planes 5 is not available as a renderer.
 
 mod compare;
 mod content;

@@ -1,4 +1,4 @@
-//! The view of the eye: faces are drawn from memories and then sampled by the display.
+//! The view that the eye sees: cube faces are drawn from the memories' contents and then sampled by the display.
 
 use crate::error::ExperimentError;
 use crate::simulation::Simulation;
@@ -7,12 +7,12 @@ use cube_faces::Drawing;
 use glam::DQuat;
 use image::{Rgb, RgbImage};
 
-/// Faces of all memories, drawn on demand.
+/// Cube faces of all memories, drawn only when a view needs them.
 #[derive(Clone, Debug)]
 pub struct Faces {
     /// Faces of each memory, empty before its first update.
     pub memories: Vec<FaceSet>,
-    /// Statistics of the drawing.
+    /// Counts of the triangles drawn into the faces.
     pub drawing: Drawing,
     config: ArpConfig,
     background: u32,
@@ -54,7 +54,7 @@ impl Faces {
         self
     }
 
-    /// Returns the picture for one orientation, which is latched once for the whole picture.
+    /// Returns the picture for one head orientation, which applies to the whole picture.
     ///
     /// # Errors
     ///
@@ -67,8 +67,8 @@ impl Faces {
         Ok((picture(table.width(), &pixels, |colour| *colour), stats))
     }
 
-    /// Returns the picture's width and, for each pixel by rows, the memory that won. `None` if all memories are empty
-    /// there.
+    /// Returns the picture's width and, for each pixel row by row, the memory that is shown. A pixel is `None` if all
+    /// memories are empty there.
     ///
     /// # Errors
     ///
@@ -92,7 +92,7 @@ pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -
     RgbImage::from_fn(width, height, |x, y| rgb(colour(&pixels[(y * width + x) as usize])))
 }
 
-/// Converts a colour from 0x00RRGGBB.
+/// Converts a colour from the number 0x00RRGGBB.
 pub(crate) fn rgb(colour: u32) -> Rgb<u8> {
     let [_, red, green, blue] = colour.to_be_bytes();
     Rgb([red, green, blue])

@@ -1,4 +1,4 @@
-//! Settings of a walk, by path.
+//! Settings of a simulated walk of the viewer through a scene. Each setting has a path such as `priority.theta_deg`.
 
 use crate::error::ExperimentError;
 use crate::hall::Route;
@@ -9,18 +9,18 @@ use priority_rendering::Falloff;
 use std::collections::BTreeMap;
 
 parameters::parameter_table! {
-    /// Speed and length of a walk.
+    /// Speed and length of the viewer's walk.
     pub struct WalkNumbers {
-        /// Speed along the scene's path.
+        /// Walking speed along the scene's path.
         m_per_s: f64 = 1.0, "m/s", Published, 0.0..=3.0 in 0.0..=100.0, "CPR05 4.2: a walker";
-        /// Length of the walk.
+        /// Length of the viewer's walk, in frames.
         frames: 1_800, "frames", Assumed, 60..=100_000 in 1..=1_000_000, "half a minute; table 1 is compared over two minutes";
-        /// Factor of the length and the width of scene and path. Heights stay the same.
+        /// Factor that multiplies length and width of the scene and its path. Heights stay the same.
         hall_scale: f64 = 1.0, "1", Assumed, 0.25..=4.0 in 0.01..=100.0, "not printed; 0.5 makes the gallery 20 m wide, eight cells of 2.5 m";
     }
 }
 
-/// Paths of settings that are choices instead of numbers.
+/// Paths of those settings that are choices instead of numbers.
 const CHOICES: [&str; 10] = [
     "policy",
     "segment",
@@ -34,13 +34,14 @@ const CHOICES: [&str; 10] = [
     "arp.order",
 ];
 
-/// Settings of a walk by path, with defaults that depend on each other.
+/// Settings of a walk by path. Some defaults depend on other settings.
 ///
-/// A walk with warped cells has a cascade by default. Only the policy `cells` cuts objects by default.
-/// `priority.threshold` in pixels or texels overrides `priority.theta_deg`.
+/// A *cascade* lets an update of a memory also update all faster memories. By default, only walks with warped cells
+/// have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
+/// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Speed and length of the walk.
+    /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
     chosen: Settings,
     is_segmented: Option<bool>,
@@ -50,7 +51,7 @@ pub struct Plan {
     said: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. It becomes an angle when the display is known.
+/// A threshold in pixels or texels. It is converted to an angle when the display is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
     /// Pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
@@ -83,7 +84,8 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl Plan {
-    /// Returns the default plan: cells, cut and warped, an ideal renderer, half a minute at 1 m/s.
+    /// Returns the default plan: objects cut at the borders of cells and warped, an ideal renderer, half a minute at 1
+    /// m/s.
     #[must_use]
     pub fn usual() -> Self {
         Self {
@@ -164,7 +166,7 @@ impl Plan {
         }
     }
 
-    /// Returns the plan with a lens that was read from the file `name`.
+    /// Returns the plan with a lens. `name` is the file from which the lens was read.
     #[must_use]
     pub fn behind(mut self, lens: Lens, name: &str) -> Self {
         self.chosen.display.lens = lens;
@@ -172,7 +174,7 @@ impl Plan {
         self
     }
 
-    /// Returns the size and angle of the picture. A lens table must match them.
+    /// Returns the size and viewing angle of the display's picture. A lens table must match both.
     #[must_use]
     pub fn picture(&self) -> Picture {
         self.chosen.display.picture()
@@ -183,7 +185,7 @@ impl Plan {
         self.route
     }
 
-    /// Returns the complete settings, with defaults for everything that was not given.
+    /// Returns the complete settings. Settings that were not given have their default values.
     ///
     /// # Errors
     ///
@@ -205,7 +207,7 @@ impl Plan {
         Ok(settings)
     }
 
-    /// Sets a number of a table.
+    /// Sets a number in the table of parameters that has this path.
     ///
     /// # Errors
     ///
@@ -260,7 +262,7 @@ fn is_on(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Parses `ideal`, or a number of triangles per second.
+/// Parses the speed of the renderer: `ideal`, or a number of triangles per second.
 fn source(text: &str) -> Result<SourceKind, String> {
     if text == "ideal" {
         return Ok(SourceKind::Ideal);

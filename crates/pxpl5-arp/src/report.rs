@@ -1,4 +1,5 @@
-//! The object `arp` of a report, with schema `pxpl5-arp/1`. Results that were not evaluated are null.
+//! The results of a viewer's walk, which a report contains as object `arp` with schema `pxpl5-arp/1`. Results that were
+//! not evaluated are null.
 
 use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
@@ -11,101 +12,103 @@ use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Name and version of the record's layout.
+/// Name and version of the layout of the report.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
-/// Results of a walk.
+/// Results of a viewer's walk through a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     pub schema: &'static str,
-    /// Texels along the edge of a face.
+    /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
-    /// Event before which the orientation is latched: `field`, `line` or `pixel`.
+    /// Event before which the display reads the head's orientation: `field`, `line` or `pixel`.
     pub latch: &'static str,
-    /// Time from the latch to the light, in ns.
+    /// Time from reading the orientation to displaying the pixel, in ns.
     pub pipeline_ns: f64,
-    /// Matrices that arrived. Null without a tracker.
+    /// Number of orientation matrices that arrived from the tracker. Null without a tracker.
     pub matrix_loads: Option<u64>,
-    /// Matrices that were not rotations. Null without a tracker.
+    /// Number of matrices that were refused because they were not rotations. Null without a tracker.
     pub matrix_refused: Option<u64>,
-    /// Footprints with a texel on another face. Null if no view was drawn.
+    /// Number of pixels whose footprint has a texel on another face. Null if no view was drawn.
     pub footprints_split: Option<u64>,
-    /// Footprints with two texels in one bank. Null if no view was drawn.
+    /// Number of pixels whose footprint has two texels in one memory bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
     pub memories: Vec<MemoryReport>,
-    /// Results of the policy.
+    /// Results of the policy that decides when each memory is drawn.
     pub priority: PriorityReport,
-    /// Widths of tears between memories, in texels (90 degrees divided by the texels of a face's edge). Null if no
-    /// memories meet.
+    /// Widths of the tears where different memories meet, in texels (90 degrees divided by the texels of a face's
+    /// edge). Null if no memories meet.
     pub tears_px: TearsReport,
-    /// Time from the latch of a known orientation to the light, in ms, mean over all pixels. Excludes tracker and host.
+    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. Excludes tracker
+    /// and host.
     pub rotation_latency_ms: Latency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
-    /// It lasts from the start of the frame with the drawn eye position to the light.
+    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
-    /// Mean difference between the view and a direct rendering of the same pose, in pixels. Null if no view was drawn.
+    /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
+    /// was drawn.
     pub sampling_error_px: Option<f64>,
 }
 
 /// Results of one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates per second.
+    /// Number of times per second that the memory shows a new update.
     pub updates_hz: f64,
     /// Mean number of frames between updates. Null without updates.
     pub period_frames: Option<f64>,
-    /// Segments in the memory, mean over frames.
+    /// Number of segments in the memory, averaged over frames.
     pub segments: f64,
-    /// Triangles per update, mean. Null without updates.
+    /// Mean number of triangles per update. Null without updates.
     pub triangles: Option<f64>,
-    /// Regions that arrived over a ring. Null with an ideal source, which has no regions.
+    /// Number of regions that arrived over a ring. Null with an ideal renderer, which has no regions.
     pub regions_copied: Option<u64>,
-    /// Retraces at which an update was incomplete.
+    /// Number of retraces at which an update was incomplete.
     pub missed: u64,
-    /// Mean distance between the eye and the position the memory was drawn from, in mm.
+    /// Mean distance between the eye and the position from which the memory was drawn, in mm.
     pub eye_age_mm: f64,
-    /// Latency of translation in ms, mean over frames.
+    /// Latency of translation in ms, averaged over frames.
     ///
-    /// It lasts from the start of the frame with the drawn eye position to the light.
+    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
-    /// Size of both buffers, in bytes.
+    /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,
 }
 
-/// Results of a policy.
+/// Results of a policy, which decides when each memory is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorityReport {
     /// Name of the policy: `full`, `objects` or `cells`.
     pub policy: &'static str,
-    /// Largest accepted image error, in degrees. Null if everything is drawn in every frame.
+    /// Largest accepted image error, in degrees. Null if the policy draws everything in every frame.
     pub theta_deg: Option<f64>,
     /// Side of a cell in metres. Null without cells.
     pub cell_m: Option<f64>,
-    /// Segments drawn per second.
+    /// Number of segments (parts of objects in one cell) that are drawn per second.
     pub draws_per_s: f64,
-    /// Draws saved relative to drawing everything in every frame, in percent.
+    /// Percentage of draws that the policy saves, relative to drawing everything in every frame.
     pub saved_percent: f64,
-    /// Objects that changed memories. Null unless the policy is `objects`.
+    /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Number of new assignments of cells to memories. Null without cells.
+    /// Number of times that cells were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,
-    /// Faces that a triangle covers, mean of the last updates. Null if no view was drawn.
+    /// Number of faces that a triangle covers, averaged over the last update of each memory. Null if no view was drawn.
     pub faces_per_primitive: Option<f64>,
 }
 
-/// Widths of tears.
+/// Widths of the tears between memories.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
-    /// Widths without warping.
+    /// Widths that the tears would have without warping.
     pub before: Option<Percentiles>,
-    /// Widths as drawn.
+    /// Widths of the tears in the displayed picture.
     pub after: Option<Percentiles>,
-    /// Largest angle by which warping moves a vertex in each frame.
+    /// Largest angle by which warping moves any vertex in a frame, as percentiles over the frames.
     pub stretch: Option<Percentiles>,
 }
 
-/// A latency and its parts.
+/// A latency and its parts, in ms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Latency {
     /// Sum of all parts in ms.
@@ -114,17 +117,17 @@ pub struct Latency {
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 
-/// Statistics of a view at the end of a walk.
+/// Counts for a view at the end of the viewer's walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewStatistics {
-    /// Statistics of the footprints in the view.
+    /// Counts of the texels that each pixel of the view reads.
     pub stats: LookStats,
-    /// Statistics of the faces drawn for the view.
+    /// Counts of the triangles drawn into the cube faces for the view.
     pub drawing: Drawing,
 }
 
 impl Report {
-    /// Creates the report of a walk, optionally with the statistics of a view at its end.
+    /// Creates the report of a viewer's walk, optionally with the counts of a view at its end.
     #[must_use]
     pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;
@@ -157,12 +160,13 @@ fn latch(display: &ArpConfig) -> &'static str {
     Latch::ALL.iter().find(|(_, latch)| *latch == display.latch).map_or("field", |(name, _)| name)
 }
 
-/// Returns the latency of rotation: all pipeline stages, then the scan from the latch to the pixel.
+/// Returns the latency of rotation: all pipeline stages, then the scan from reading the orientation to the pixel.
 fn rotation(display: &ArpConfig) -> Latency {
     Latency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation: drawing until the update is shown, waiting, then the scan.
+/// Returns the latency of translation in three parts: drawing the update, the wait after it is first shown, and the
+/// scan.
 fn translation(memory: Option<&MemoryTally>, settings: &Settings) -> Latency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {
@@ -180,7 +184,8 @@ fn ms(span: Span) -> f64 {
     span.0 as f64 / 1e9
 }
 
-/// Returns the mean time from a latch to a pixel's light over both fields, in ms. `None` if the scan is invalid.
+/// Returns the mean time from reading the orientation to displaying a pixel, over both fields, in ms. Returns `None` if
+/// the scan is invalid.
 fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let scan = display.scan().ok()?;
     let mut sum = 0.0;

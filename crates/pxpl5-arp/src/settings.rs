@@ -6,13 +6,13 @@ use cube_faces::{CubeView, DepthRange};
 use priority_rendering::{Falloff, PriorityTiming};
 use serde::{Deserialize, Serialize};
 
-/// The policy that decides which segments are drawn when.
+/// The policy that decides which segments are drawn in which frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PolicyKind {
-    /// One memory, with everything drawn in every frame.
+    /// One memory, in which everything is drawn in every frame.
     Full,
-    /// Each object is in the slowest memory that keeps its image error below the threshold.
+    /// Each object is in the least often updated memory that keeps its image error below the threshold.
     Objects,
     /// Square cells, assigned to memories by their distance from the user's cell.
     #[default]
@@ -36,32 +36,33 @@ impl PolicyKind {
 /// Speed of the renderer that draws the faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SourceKind {
-    /// Takes no time: updates due in a frame are shown in the same frame.
+    /// A renderer that takes no time: updates that are due in a frame are shown in the same frame.
     #[default]
     Ideal,
-    /// Draws memories one after the other at a limited rate. Updates are shown in the next frame at the earliest.
+    /// A renderer that draws memories one after the other at a limited rate. Updates are shown in the next frame at the
+    /// earliest.
     Timed {
-        /// Triangles per second. A triangle counts once, independent of the number of faces it covers.
+        /// Number of triangles drawn per second. A triangle counts once, even if it covers several faces.
         triangles_per_s: f64,
     },
 }
 
-/// Nearest distance along a face's axis, in metres.
+/// Distances of the near and the far plane along a face's axis, in metres.
 ///
-/// Both limits are assumed. The nearest is less than the 1 m of the gallery's path divided by the square root of 3. The
-/// farthest exceeds the hall. A step of depth is 0.24 mm at 20 m.
+/// Both limits are assumed. The near limit is less than 1 m (for the gallery's path) divided by the square root of 3.
+/// The far limit exceeds the size of the hall. A step of depth is 0.24 mm at 20 m.
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 100.0;
 
-/// Settings of an experiment, without the scene and the walk.
+/// Settings of an experiment, without the scene and the viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     pub policy: PolicyKind,
     /// True if objects are cut at the borders of cells.
     pub is_segmented: bool,
-    /// Decrease of warping from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
+    /// Decrease of the warp from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
     pub falloff: Falloff,
-    /// True if an update of a memory makes all faster memories due.
+    /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,
     /// Parameters of the policies.
     pub numbers: PriorityTiming,
@@ -70,7 +71,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Cells with the size fitted to table 1, cut but not warped, drawn by an ideal renderer.
+    /// Settings with objects cut but not warped, cells of the size fitted to table 1, and an ideal renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,
@@ -81,10 +82,10 @@ impl Settings {
         source: SourceKind::Ideal,
     };
 
-    /// The settings of [`Self::CELLS`] with warping and its cascade.
+    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all faster memories.
     pub const WARPED: Self = Self { falloff: Falloff::Linear, has_cascade: true, ..Self::CELLS };
 
-    /// One memory, with everything drawn in every frame.
+    /// Settings with one memory, in which everything is drawn in every frame.
     pub const FULL: Self = Self {
         policy: PolicyKind::Full,
         numbers: PriorityTiming { memories: 1, ..PriorityTiming::PAPERS },
@@ -92,7 +93,8 @@ impl Settings {
         ..Self::CELLS
     };
 
-    /// Uncut objects in the slowest memories that keep their image error below the threshold.
+    /// Settings with uncut objects. Each object is in the least often updated memory that keeps its image error below
+    /// the threshold.
     pub const OBJECTS: Self = Self { policy: PolicyKind::Objects, is_segmented: false, ..Self::CELLS };
 
     /// Returns the settings with another number of memories, for both the policy and the display.
@@ -103,7 +105,7 @@ impl Settings {
         self
     }
 
-    /// Returns the settings with another side of cells, in metres.
+    /// Returns the settings with another side of a cell, in metres.
     #[must_use]
     pub const fn with_cells(mut self, side_m: f64) -> Self {
         self.numbers.cell_m = side_m;
@@ -135,7 +137,7 @@ impl Settings {
         }
     }
 
-    /// Returns the projection with which faces are drawn.
+    /// Returns the projection with which the cube faces are drawn.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! Simulation of a walk, frame by frame: due memories, drawing and display.
+//! Simulation of a viewer's walk, frame by frame: which memories are due for an update, their drawing, and their
+//! display.
 
 use crate::content::{Content, warp};
 use crate::error::ExperimentError;
@@ -8,7 +9,7 @@ use crate::world::World;
 use glam::DVec3;
 use priority_rendering::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
 
-/// The smallest thing that a policy assigns to a memory: an object, or a segment of one.
+/// The smallest part of a scene that a policy assigns to a memory: an object, or a segment of an object.
 #[derive(Clone, Debug)]
 struct Unit {
     segments: std::ops::Range<usize>,
@@ -17,7 +18,7 @@ struct Unit {
 }
 
 impl Unit {
-    /// Returns the unit as an eye moving at `speed` m/s sees it.
+    /// Returns the distance, size and speed of the unit relative to an eye that moves at `speed` m/s.
     fn seen(&self, eye: DVec3, speed: f64) -> ObjectView {
         let distance_m = self.centre.distance(eye);
         ObjectView { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
@@ -29,7 +30,7 @@ impl Unit {
     }
 }
 
-/// A policy and its state.
+/// A policy for updating memories, with its state.
 #[derive(Clone, Debug)]
 enum Policy {
     Full,
@@ -37,22 +38,23 @@ enum Policy {
     Cells(Cells),
 }
 
-/// Events of one frame.
+/// Memories that became due, were updated or missed the retrace in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
     /// Position of the eye.
     pub eye: DVec3,
-    /// Flag for each memory that became due.
+    /// For each memory, true if it became due for an update.
     pub due: Vec<bool>,
-    /// Flag for each memory with a new update, shown from this frame (ideal source) or from the next frame on.
+    /// For each memory, true if it has a new update. An ideal renderer shows the update from this frame on, others from
+    /// the next frame on.
     pub swapped: Vec<bool>,
-    /// Flag for each memory whose update was incomplete at the retrace.
+    /// For each memory, true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
     /// True if cells were assigned to memories anew.
     pub deals_anew: bool,
 }
 
-/// A walk through a world, frame by frame.
+/// A viewer's walk through a scene, simulated frame by frame.
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
     world: &'a World,
@@ -102,13 +104,13 @@ impl<'a> Simulation<'a> {
         &self.settings
     }
 
-    /// Returns the contents of each memory. `None` before its first update.
+    /// Returns the contents of each memory, or `None` before its first update.
     #[must_use]
     pub fn shown(&self) -> &[Option<Content>] {
         &self.shown
     }
 
-    /// Returns the current assignment of cells to memories, for the policy of cells.
+    /// Returns the current assignment of cells to memories. Returns `None` unless the policy is `cells`.
     #[must_use]
     pub const fn dealing(&self) -> Option<&CellAssignment> {
         match &self.policy {
@@ -117,7 +119,8 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the number of objects that changed memories so far, for the policy of objects.
+    /// Returns the number of times that an object changed to another memory. Returns `None` unless the policy is
+    /// `objects`.
     #[must_use]
     pub const fn moved_objects(&self) -> Option<u64> {
         match &self.policy {
@@ -130,7 +133,7 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Priority`] if the falloff has no length.
+    /// [`ExperimentError::Priority`] if the distance over which warping decreases is zero.
     pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, ExperimentError> {
         // Ask the policy which memories are due, and collect their contents.
         let update = self.update(eye);
@@ -199,7 +202,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the new contents of the memories that are due.
+    /// Returns the new contents of the memories that are due for an update.
     fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, ExperimentError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A timed source of faces. It draws memories in ascending order and shows only complete updates.
+//! A renderer of limited speed. It draws memories in ascending order and shows only complete updates.
 
 use crate::content::Content;
 
@@ -6,14 +6,14 @@ use crate::content::Content;
 #[derive(Clone, Debug)]
 pub(crate) struct Job {
     pub(crate) content: Content,
-    /// Drawing time of the whole update, in seconds.
+    /// Time that the renderer needs to draw the whole update, in seconds.
     pub(crate) work_s: f64,
     pub(crate) left_s: f64,
-    /// Bit mask of the memories that must be shown together with this one. 0 if the memory is independent.
+    /// Bit mask of the memories that must be shown in the same frame as this memory. 0 if the memory is independent.
     pub(crate) together: u8,
 }
 
-/// Updates in progress, and updates that wait for them.
+/// Updates that are being drawn, and updates that wait for them.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,
@@ -25,14 +25,15 @@ impl Queue {
         Self { running: vec![None; memories], waiting: vec![None; memories] }
     }
 
-    /// Adds an update. It replaces an update that has not begun, and waits for one that has begun.
+    /// Adds an update of a memory. The new update replaces an update that has not begun, or waits for one that has
+    /// begun.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };
         *place = Some(job);
     }
 
-    /// Draws for the duration of a frame, starting with the fastest memory.
+    /// Draws for `seconds`, the duration of a frame, starting with the fastest memory.
     pub(crate) fn work(&mut self, mut seconds: f64) {
         for job in self.running.iter_mut().flatten() {
             let spent = job.left_s.min(seconds);
@@ -41,7 +42,7 @@ impl Queue {
         }
     }
 
-    /// Returns the updates that can be shown at a retrace, by memory. `Err` marks an incomplete update.
+    /// Returns for each memory the update that can be shown at a retrace. `Err` marks an incomplete update.
     pub(crate) fn retrace(&mut self) -> Vec<Option<Result<Content, ()>>> {
         // A memory without an update counts as complete, so that it does not delay its group.
         let whole: Vec<bool> =

@@ -1,23 +1,25 @@
-//! Tears: gaps between memories that were drawn from different positions.
+//! Tears: gaps in the view between memories that were drawn from different positions.
 
 use crate::content::{Content, angle};
 use crate::world::World;
 use serde::Serialize;
 
-/// Angles at the vertices that memories share, in one frame.
+/// Angles of the tears at vertices that several memories share, in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tears {
-    /// Angles between both directions of each shared vertex without warping, in radians.
+    /// Angles of all tears without warping, in radians. A tear's angle lies between the two directions in which two
+    /// memories draw a shared vertex.
     pub before: Vec<f64>,
-    /// Angles between both directions of each shared vertex as drawn, in radians.
+    /// Angles of all tears as displayed, in radians, between the two directions in which two memories draw a shared
+    /// vertex.
     pub after: Vec<f64>,
-    /// Angle by which warping moves each vertex of a warped memory, in radians.
+    /// Angles by which warping moves the vertices of a memory, in radians. Each vertex has one angle.
     pub stretch: Vec<f64>,
-    /// Width in radians of the widest tear as drawn, and its vertex as an index into [`World::vertices`].
+    /// Width in radians of the widest displayed tear, and its vertex as an index into [`World::vertices`].
     pub widest: Option<(f64, u32)>,
 }
 
-/// Returns for each segment the memory that shows it.
+/// Returns for each segment the index of the memory that shows it, or `None`.
 fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
     let mut holders = vec![None; world.segments.len()];
     for (memory, content) in shown.iter().enumerate() {
@@ -72,7 +74,7 @@ pub struct Percentiles {
 }
 
 impl Percentiles {
-    /// Computes the percentiles of angles in radians, where a texel has `texel_deg` degrees. `None` without angles.
+    /// Computes the percentiles of angles in radians. A texel has `texel_deg` degrees. Returns `None` without angles.
     #[must_use]
     pub fn of(angles: &[f64], texel_deg: f64) -> Option<Self> {
         let mut sorted = angles.to_vec();

@@ -1,4 +1,4 @@
-//! A complete walk and its counters.
+//! A complete walk of the viewer through a scene, with counters of updates and draws.
 
 use crate::error::ExperimentError;
 use crate::settings::{Settings, SourceKind};
@@ -11,48 +11,50 @@ use tracking::motion::Walk;
 /// Counters of one memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MemoryTally {
-    /// Updates that were shown.
+    /// Number of updates that were shown.
     pub updates: u64,
-    /// Retraces at which an update was incomplete.
+    /// Number of retraces at which an update was incomplete.
     pub missed: u64,
-    /// Segments drawn, summed over all updates.
+    /// Number of segments drawn, summed over all updates.
     pub segments_drawn: u64,
-    /// Triangles drawn, summed over all updates.
+    /// Number of triangles drawn, summed over all updates.
     pub triangles_drawn: u64,
-    /// Segments in the memory, summed over frames.
+    /// Number of segments in the memory, summed over frames.
     pub segment_frames: u64,
-    /// Distance between the eye and the position the memory was drawn from, summed over frames, in metres.
+    /// Distance between the eye and the position from which the memory was drawn, summed over frames, in metres.
     pub age_m: f64,
-    /// Frames in which the memory showed an update.
+    /// Number of frames in which the memory showed any update.
     pub shown_frames: u64,
-    /// Age of the eye position, in frames, summed over the frames with an update.
+    /// Age of the eye position from which the shown update was drawn, in frames. It is summed over the frames that
+    /// showed an update.
     pub age_frames: u64,
-    /// Part of `age_frames` before the update was first shown.
+    /// Part of `age_frames` that passed before each update was first shown.
     pub drawing_frames: u64,
     /// Number of frames that the shown update took to draw.
     drawn_in: u64,
 }
 
-/// Counters of a walk.
+/// Counters of a viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
     pub frames: u64,
     /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
-    /// Number of new assignments of cells to memories.
+    /// Number of times that cells were assigned to memories anew.
     pub redeals: u64,
-    /// Objects that changed memories, for the policy of objects.
+    /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Angles at shared vertices, over all frames.
+    /// Angles of the tears at shared vertices, over all frames.
     pub tears: Tears,
-    /// For each frame, the widest tear as drawn in radians, and its vertex. `None` if no memories meet.
+    /// For each frame, the width in radians of the widest tear as displayed, and the index of its vertex. `None` if no
+    /// memories meet.
     pub widest: Vec<Option<(f64, u32)>>,
-    /// Due, shown and missed memories of each frame.
+    /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,
 }
 
 impl WalkTally {
-    /// Returns the updates per second of each memory.
+    /// Returns the number of updates per second for each memory.
     #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()
@@ -97,7 +99,7 @@ impl WalkTally {
     }
 }
 
-/// Walks through a world for `frames` frames. `eye` returns the position in each frame.
+/// Walks through a world for `frames` frames. `eye` returns the position of the eye in each frame.
 ///
 /// # Errors
 ///
@@ -111,7 +113,7 @@ pub fn walk(
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
-/// Walks through a world, and returns the final state as well as the counters.
+/// Walks through a world, and returns the final state of the simulation together with the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
     settings: &Settings,
@@ -136,7 +138,7 @@ pub(crate) fn walked<'a>(
     Ok((simulation, tally))
 }
 
-/// Returns a function from the number of a frame to the walker's position at its start.
+/// Returns a function that maps the index of a frame to the walker's position at the start of this frame.
 pub fn at_frames(path: &Walk, m_per_s: f64, frame_hz: f64) -> impl Fn(u64) -> DVec3 {
     move |frame| path.place(m_per_s * frame as f64 / frame_hz)
 }

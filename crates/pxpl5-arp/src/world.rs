@@ -1,4 +1,4 @@
-//! A scene cut at the borders of cells.
+//! A scene whose objects are cut at the borders of cells.
 
 use crate::error::ExperimentError;
 use cube_faces::Corner;
@@ -8,7 +8,7 @@ use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The part of an object that lies in one cell.
+/// The part of an object that lies in one cell of the scene's floor plan.
 #[derive(Clone, Debug)]
 pub struct Segment {
     /// Index of the object that the segment was cut from.
@@ -19,15 +19,15 @@ pub struct Segment {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A structure of the scene.
+/// An object of the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub name: String,
-    /// Range of its segments in [`World::segments`].
+    /// Range of the object's segments in [`World::segments`].
     pub segments: Range<usize>,
 }
 
-/// A vertex on a cut that several segments share.
+/// A vertex on a cut. Several segments share this vertex.
 #[derive(Clone, Debug)]
 pub struct SharedVertex {
     /// Index into [`World::vertices`].
@@ -36,7 +36,7 @@ pub struct SharedVertex {
     pub segments: Vec<usize>,
 }
 
-/// Meaning of the colours of triangles.
+/// Meaning of the colours in which triangles are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
     /// The shaded colours of the scene.
@@ -48,16 +48,16 @@ pub enum Tint {
     Cells,
 }
 
-/// A scene cut at the borders of cells.
+/// A scene whose objects are cut at the borders of cells.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// Positions in metres. For each object, its own vertices are followed by those of its cuts.
+    /// Positions in metres. The vertices of each object are followed by the vertices that its cuts add.
     pub vertices: Vec<DVec3>,
     /// Shaded colours of the vertices.
     pub colours: Vec<u32>,
     /// All segments, in the order of objects.
     pub segments: Vec<Segment>,
-    /// The structures of the scene.
+    /// The objects of the scene.
     pub objects: Vec<Object>,
     /// Vertices at which segments of an object meet.
     pub shared: Vec<SharedVertex>,
@@ -119,7 +119,7 @@ impl World {
         Ok(())
     }
 
-    /// Returns the cells that contain segments, with repetitions.
+    /// Returns the cells that contain segments. A cell is repeated for each of its segments.
     pub fn cells(&self) -> impl Iterator<Item = Cell> {
         self.segments.iter().map(|segment| segment.cell)
     }

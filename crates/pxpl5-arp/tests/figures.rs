@@ -33,11 +33,11 @@ fn table_1_checked_rates_fall_from_memory_to_memory_and_memory_0_is_drawn_in_eve
     }
 }
 
-/// An independent program that models the policy gave 40.6, 25.7 and 16.0 Hz, with an error of 5.5 %.
+/// Compares with an independent program for the policy, which gave 40.6, 25.7 and 16.0 Hz, with an error of 5.5 %.
 ///
 /// Its rules were equal rings, distances to occupied cells, and a straight walk through the middle of seven cells. With
-/// doubling rings and the block's border, its errors were 4.7 to 6.4 % in all halls. With equal rings and the border
-/// they were 11 to 13 %.
+/// doubling rings, and distances to the border of a block of cells, its errors were 4.7 to 6.4 % in all halls. With
+/// equal rings and such distances they were 11 to 13 %.
 #[test]
 fn rings_that_double_explain_table_1_better_than_equal_rings() {
     let ranked = &FIGURES.0.interpretations.ranked;
@@ -57,7 +57,7 @@ fn rings_that_double_explain_table_1_better_than_equal_rings() {
     );
 }
 
-/// If memory 0 holds only the home cell, memory 1 is drawn as often as memory 0.
+/// Checks that memory 1 is drawn as often as memory 0 if memory 0 holds only the user's cell.
 #[test]
 fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
     let ranked = &FIGURES.0.interpretations.ranked;
@@ -65,7 +65,8 @@ fn table_1_without_inner_rings_is_out_by_a_quarter_at_least() {
     assert!(outside.clone().count() == 4 && outside.clone().all(|ranked| ranked.mean_error_percent > 25.0));
 }
 
-/// Each of three rates is left out once. The choice then uses only the other two rates.
+/// Checks predictions of three update rates. Each rate is left out once, and the rules are then chosen by the other two
+/// rates.
 #[test]
 fn rates_that_are_left_out_are_predicted_by_the_others() {
     let left_out = &FIGURES.0.interpretations.left_out;
@@ -78,10 +79,10 @@ fn rates_that_are_left_out_are_predicted_by_the_others() {
     }
 }
 
-/// 2 texels are 3.75 pixels, and one texel is 1.875 pixels.
+/// Checks that 2 texels are 3.75 pixels, and that one texel is 1.875 pixels.
 ///
-/// The nearest border is one side of a cell away. A memory that is late by a frame of 16.7 mm adds the corresponding
-/// angle to its tears.
+/// The nearest border is one cell side away. If the update of a memory is late by a frame of 16.7 mm, its tears grow by
+/// the angle of this distance.
 #[test]
 fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
     let rows = &FIGURES.0.thresholds;
@@ -94,10 +95,11 @@ fn a_threshold_in_pixels_tells_the_side_of_a_cell() {
     assert!((row("1 texel").cell_m / row("2 texels").cell_m - 2.0).abs() < 1e-9);
 }
 
-/// At the limits, the tangent of the sphere's angular radius is 1/2, 1 and 2. The diameters are 2 sin(atan(x)) of the
-/// distance.
+/// Checks the limits: the tangent of the sphere's angular radius is 1/2, 1 and 2. The diameters are 2 sin(atan(x))
+/// times the distance.
 ///
-/// The rule of the chord makes them smaller by a fraction of theta.
+/// The default rule measures the eye's movement by its chord. This rule makes the diameters smaller by a fraction of
+/// theta.
 #[test]
 fn a8_lies_between_limits_that_depend_on_what_is_measured() {
     let expected = [0.5_f64, 1.0, 2.0].map(|tangent| {
@@ -119,7 +121,7 @@ fn table_2_cutting_moves_segments_outwards_and_saves() {
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
 
-/// D1 to D5 must equal the values that the specification computed by hand.
+/// Checks that the definitions D1 to D5 equal the values that the specification computed by hand.
 #[test]
 fn definitions_are_the_derived_numbers_and_no_rows() {
     let all = definitions();

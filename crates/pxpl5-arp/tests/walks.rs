@@ -1,4 +1,4 @@
-//! Walks: properties and special cases of the policies with a source of faces.
+//! Tests of walks through a scene: general properties and special cases of the policies with a renderer.
 
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use tracking::motion::Walk;
 
-/// Settings with the scene's own cut, a threshold of 90/512 degrees, and the usual rings.
+/// Settings with the cell size of the scene, a threshold of 90/512 degrees, and the default rings of cells.
 const CELLS: Settings = five_metres(Settings::CELLS);
 const WARPED: Settings = five_metres(Settings::WARPED);
 const OBJECTS: Settings = five_metres(Settings::OBJECTS);
@@ -337,10 +337,10 @@ fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
     assert!(report["memories"][0]["regions_copied"].is_null());
 }
 
-/// A pixel lights on average 239/2 lines of 4004/63 us and 639/2 pixels of 11/135 us after the first pixel of its
-/// field.
+/// Checks the mean times until a pixel is displayed. After the first pixel of its field, it takes 239/2 lines of
+/// 4004/63 us and 639/2 pixels of 11/135 us.
 ///
-/// It lights 639/2 pixels after the first pixel of its line. The pipeline takes 650 ns.
+/// After the first pixel of its line, it takes 639/2 pixels. The pipeline takes 650 ns.
 #[test]
 fn a_walk_has_the_latencies_of_its_display() {
     let [lines_ms, pixels_ms] = [119.5 * 4.004 / 63.0, 319.5 * 0.011 / 135.0];
@@ -362,7 +362,8 @@ fn a_walk_has_the_latencies_of_its_display() {
     }
 }
 
-/// A memory drawn every n frames is on average (n - 1) / 2 frames old. A timed source adds one frame.
+/// Checks that a memory drawn every n frames is on average (n - 1) / 2 frames old. A renderer of limited speed adds one
+/// frame.
 #[test]
 fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
     let eye = at_frames(&PATH, 1.0, 60.0);
@@ -382,7 +383,7 @@ fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
     }
 }
 
-/// The faces are independent of the lens. Beyond 170 degrees there is no flat picture.
+/// Checks that the faces do not depend on the lens, and that views wider than 170 degrees have no flat picture.
 #[test]
 fn pictures_are_seen_through_the_lens_that_was_chosen() {
     let names_of = |display: &dyn Fn(&mut Settings)| {

@@ -1,26 +1,26 @@
-//! Choices by name: clips, projections, tie rules, bins, coverage.
+//! Settings that are choices with names: clips, projections, tie rules, bins, coverage.
 
 use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 
-/// One of the six clips, without its offset or bias, which is a separate number.
+/// One of the six methods of clipping the scene to a slice. Its offset or bias is a separate number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipKind {
-    /// Clip by the near and far planes alone.
+    /// Clip by the near plane and the far plane alone.
     Prism,
-    /// Clip by two user clip planes in each of two passes.
+    /// Clip by two user clip planes in each of two drawing passes.
     UserPlanes,
-    /// Clip by two planes in the fragment program: the exact volume.
+    /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by planes that leave some thickness at the axis, in two passes.
+    /// Clip by planes that leave some thickness at the axis, in two drawing passes.
     Tapered,
-    /// Clip by both boundary planes, moved outwards.
+    /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,
-    /// Clip by the product of the distances from both boundary planes, plus a bias.
+    /// Clip by the sign of a sum: the product of the distances from both boundary planes, plus a bias.
     Hyperbolic,
 }
 
 impl ClipKind {
-    /// All six clips in the order of the paper.
+    /// All six clips, in the order of the paper.
     pub const ALL: [Self; 6] =
         [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
 }
@@ -50,9 +50,9 @@ pub enum RendererKind {
     PixelPlanes,
 }
 
-/// A choice with names in options, files and reports.
+/// A choice that has a name in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names with the choices that they stand for.
+    /// Names, each with the choice that it stands for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

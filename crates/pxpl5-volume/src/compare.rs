@@ -1,4 +1,4 @@
-//! Comparison of all clips and projections of a scene, and of the methods that the paper rejects as too expensive.
+//! Comparison of all clips and projections for one scene. It includes methods that the paper rejects as too expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::error::VolumeError;
@@ -13,36 +13,37 @@ use spatialgl::{Coverage, Workers};
 /// One row of a comparison: a combination of clip, projection, samples and coverage, with its results.
 #[derive(Clone, Debug, Serialize)]
 pub struct VariantRow {
-    /// Name of the clip with its offset or bias.
+    /// Name of the method that clips the scene to a slice, with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
     /// Number of samples per pixel.
     pub samples: u64,
-    /// Coverage: `sampled` or `connected`.
+    /// Rule for the pixels that a triangle covers: `sampled` or `connected`.
     pub coverage: &'static str,
-    /// Number of times that the scene is drawn for a slice.
+    /// Number of times that the whole scene is drawn for each slice.
     pub passes: u64,
     /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,
-    /// Number of fragments that lie in their slice's volume.
+    /// Number of fragments that lie in the volume of their slice.
     pub fragments_accepted: u64,
-    /// Draws with bins as a percentage of the draws without bins.
+    /// Number of primitives drawn with bins, as a percentage of the number without bins.
     pub draws_percent: f64,
-    /// Percentage of queried tiles that are occupied.
+    /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,
-    /// Percentage of the mesh's intersections with the slices that is shown.
+    /// Percentage of samples on the intersections of mesh and slices that have a drawn pixel beside them.
     pub connected_percent: f64,
-    /// Radius within which no slice shows anything, or `None` for a dark volume.
+    /// Radius in pixels around the axis within which no slice can show anything, or `None` if no slice can show
+    /// anything.
     pub dead_zone_radius_px: Option<u32>,
     /// Number of pixels lit in any colour, in all slices.
     pub lit_voxels: u64,
     /// Number of lit pixels in each ring around the axis.
     pub brightness_by_radius: Vec<u64>,
-    /// Ratio of `brightness_by_radius` to that of the exact clip with the same projection, or `None` for rings without
-    /// lit pixels there.
+    /// Ratio of `brightness_by_radius` to the value of the exact clip with the same projection. `None` for rings in
+    /// which the exact clip lights no pixel.
     pub brightness_over_exact: Vec<Option<f64>>,
-    /// Time of the model in milliseconds: processor, GPU, bus.
+    /// Modelled times of one volume in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
     /// Volumes per second if processor, GPU and bus work one after the other.
     pub volumes_hz_serial: f64,
@@ -52,7 +53,7 @@ pub struct VariantRow {
     pub volume_hash: String,
     /// Settings of this variant that go beyond the paper.
     pub beyond_paper: Vec<&'static str>,
-    /// Time that this computer took, seconds.
+    /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
     #[serde(skip)]
     variant: Variant,
@@ -73,12 +74,12 @@ pub struct VolumeComparison {
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,
-    /// Views of the variants in the same order, all with one exposure.
+    /// Views of the variants, in the order of `variants`, all with one exposure.
     #[serde(skip)]
     pub pictures: Vec<RgbImage>,
 }
 
-/// The viewpoint of the pictures of a comparison.
+/// The position of the eye in the pictures of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
@@ -97,8 +98,8 @@ struct Variant {
     coverage: Coverage,
 }
 
-/// Returns all variants: six clips by three projections, then the orthographic hyperbolic clip with more samples and
-/// with connected coverage.
+/// Returns all variants. The first 18 combine each of six clips with each of three projections. Further variants use
+/// the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
 fn variants() -> Vec<Variant> {
     let sampled = |clip, projection| Variant { clip, projection, samples: 1, coverage: Coverage::Sampled };
     let mut all: Vec<Variant> = ClipKind::ALL
@@ -112,14 +113,14 @@ fn variants() -> Vec<Variant> {
     all
 }
 
-/// Returns the number of volumes that a comparison draws.
+/// Returns the number of volumes that a comparison draws: one for each variant.
 #[must_use]
 pub fn variant_count() -> u64 {
     variants().len() as u64
 }
 
-/// Draws every variant of a scene, with all other settings shared. `finished` is called with the number of finished and
-/// of all variants.
+/// Draws every variant of a scene. All other settings are the same for all variants. `finished` is called with the
+/// number of finished variants and the number of all variants.
 ///
 /// # Errors
 ///
@@ -216,7 +217,7 @@ impl Variant {
 }
 
 impl VolumeComparison {
-    /// Divides each row's brightness by the brightness of the exact clip with the same projection.
+    /// Divides the lit pixels of each row by the lit pixels of the exact clip with the same projection, ring by ring.
     fn set_brightness_ratios(&mut self) {
         let exact: Vec<(ProjectionKind, Vec<u64>)> = self
             .variants
@@ -234,8 +235,8 @@ impl VolumeComparison {
         }
     }
 
-    /// Returns the pictures of six clips by three projections, with one row for each clip. Returns `None` for a
-    /// comparison without pictures.
+    /// Returns one picture with a row for each of the six clips and a column for each of the three projections. Returns
+    /// `None` for a comparison without pictures.
     #[must_use]
     pub fn clips_and_projections(&self) -> Option<RgbImage> {
         let columns = ProjectionKind::ALL.len();
@@ -243,8 +244,9 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns pictures of the hyperbolic clip: orthographic with 1 sample, jittered, orthographic with 4 and 16
-    /// samples, and connected. Returns `None` without pictures.
+    /// Returns five views with the hyperbolic clip side by side. They are orthographic with 1 sample, jittered,
+    /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
+    /// pictures.
     #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self

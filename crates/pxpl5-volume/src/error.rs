@@ -4,11 +4,11 @@ use perspecta::PerspectaError;
 use spatialgl::SpatialError;
 use thiserror::Error;
 
-/// An error for a setting, a scene or a request. Each message names the item, the expected and the found value.
+/// An error in a setting, a scene or a request. Each message names the item, the expected and the found value.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VolumeError {
-    /// No setting has this path.
+    /// No setting has the given path.
     #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
     UnknownKey {
         /// Option that contained the path.
@@ -49,7 +49,7 @@ pub enum VolumeError {
 }
 
 impl VolumeError {
-    /// Returns true if the error is in the scene and not in the request.
+    /// Returns true if the scene causes the error, and not the request.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {
         matches!(self, Self::Pipeline(SpatialError::NotFinite { .. } | SpatialError::Index { .. }))

@@ -1,4 +1,4 @@
-//! A volume that has been drawn from a scene and settings.
+//! A volume, drawn from a scene with given settings.
 
 use crate::choices::RendererKind;
 use crate::error::VolumeError;
@@ -11,22 +11,22 @@ use spatialgl::{
 };
 use std::time::Instant;
 
-/// A drawn volume with everything from which it was drawn.
+/// A drawn volume, with the settings, display and recording from which it was drawn.
 #[derive(Clone, Debug)]
 pub struct Volume {
     /// Settings with which the volume was drawn.
     pub settings: VolumeSettings,
     /// Name of the scene that the volume shows.
     pub scene: String,
-    /// Display with its slices, their volumes and bins.
+    /// Display, with the volume and the bins of each slice.
     pub display: SweptDisplay,
-    /// Recording that was replayed for every slice.
+    /// Recorded graphics commands that were replayed for every slice.
     pub commands: CommandBuffer,
-    /// Bits, counts, and colours before halftoning.
+    /// Bits of the volume, counts of the drawing, and colours before halftoning.
     pub frame: VolumeFrame,
     /// Work of the renderers of Pixel-Planes 5, or `None` if the host drew the volume.
     pub bounds: Option<SliceBounds>,
-    /// Ring messages of the volume, or `None` if the host drew the volume or its tiles cannot be sent.
+    /// Ring messages of the volume. `None` if the host drew the volume, or if its tiles cannot be sent.
     pub traffic: Option<SliceTraffic>,
     /// Time that this computer took to draw the volume, seconds.
     pub host_seconds: f64,
@@ -43,7 +43,7 @@ impl Volume {
         Self::draw_commands(settings, scene.name(), commands, workers)
     }
 
-    /// Draws a recording whose vertices are already in pixels.
+    /// Draws recorded graphics commands whose vertices are already in pixels.
     ///
     /// # Errors
     ///

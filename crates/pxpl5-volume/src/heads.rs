@@ -1,27 +1,26 @@
 //! Comparison of two displays for a moving viewer: the volume, and a head-mounted display of the same latency.
 //!
-//! A volume does not move, so a moving viewer sees another side of the volume at once. Errors of a volume come from the
-//! positions of its voxels. A head-mounted display draws each picture for a past pose of the head. Errors of this
-//! display come from its latency.
+//! A volume does not move, so a moving viewer sees another side of the volume at once. The errors of a volume come from
+//! the positions of its voxels. A head-mounted display draws each picture for a past pose of the head, so its errors
+//! come from its latency.
 //!
 //! # Behaviour
 //!
 //! - The volume stands upright before the head. The middle of the volume is `viewer.distance_mm` ahead of the start of
-//!   the motion, and the +z axis points towards the head. Both displays show the same scene in the position of the
+//!   the motion, and the +z axis points towards the head. Both displays show the same scene at the position of the
 //!   volume.
-//! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. *Head-mounted*: the angle between the
-//!   drawn position of a point, for the pose one latency ago, and its true position. *Volume*: the angle between a
-//!   point and the voxel that shows it, in the nearest slice.
-//! - Dither: the level of a colour is correct only on average over a cell of the matrix. The angle of this cell
-//!   measures the coarseness.
-//! - Pictures: each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
-//!   for the eye one latency ago, and shifted by the error of its middle.
+//! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
+//!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
+//!   For the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
+//! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
+//!   visual angle of this cell.
+//! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
+//!   for the pose of the eye one latency ago. It is shifted by the error of its middle.
 //!
 //! # Not modelled
 //!
 //! A predicting tracker, tracker noise, and the pixels of the head-mounted display (their angle is reported). Roll of
 //! the head in pictures. The resolution of the eye.
-//! pictures; the eye's resolution.
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;
@@ -37,13 +36,13 @@ use tracking::Pose;
 use tracking::motion::Motion;
 use tracking::view::HmdView;
 
-/// Number of scene vertices at which errors are evaluated. Assumed: with more points the mean does not change.
+/// Number of scene vertices at which errors are evaluated. It is assumed that more points would not change the mean.
 pub const POINTS: usize = 512;
 
 /// Picoseconds in a second.
 const PS_PER_S: f64 = 1e12;
 
-/// Errors at one instant, over all points and both eyes.
+/// Errors of both displays at one instant, over all points and both eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeadSample {
     /// Time since the motion began, seconds.
@@ -54,22 +53,24 @@ pub struct HeadSample {
     pub elevation_deg: f64,
     /// Distance of the head from the volume's middle, millimetres.
     pub distance_mm: f64,
-    /// Mean angle between drawn and true position on the head-mounted display, degrees, or `None` if every point is
-    /// behind the eye.
+    /// Mean angle between the drawn and the true position of a point on the head-mounted display, in degrees. `None` if
+    /// every point is behind the eye.
     pub hmd_mean_deg: Option<f64>,
-    /// Largest angle between drawn and true position on the head-mounted display, degrees.
+    /// Largest angle between the drawn and the true position of a point on the head-mounted display, in degrees.
     pub hmd_worst_deg: Option<f64>,
-    /// Mean error on the head-mounted display, in its pixels.
+    /// Mean distance between drawn and true positions on the head-mounted display, in its pixels.
     pub hmd_mean_px: Option<f64>,
-    /// Mean error on the head-mounted display, in millimetres at the points' distance.
+    /// Mean distance between drawn and true positions on the head-mounted display, in millimetres at the points'
+    /// distance.
     pub hmd_mean_mm: Option<f64>,
-    /// Mean angle between a point and its voxel in the volume, degrees.
+    /// Mean angle between a point and the voxel that shows the point, in degrees.
     pub voxel_mean_deg: f64,
-    /// Largest angle between a point and its voxel in the volume, degrees.
+    /// Largest angle between a point and the voxel that shows the point, in degrees.
     pub voxel_worst_deg: f64,
-    /// Mean distance between a point and its voxel in the volume, perpendicular to the line of sight, millimetres.
+    /// Mean distance between a point and the voxel that shows the point, in millimetres perpendicular to the line of
+    /// sight.
     pub voxel_mean_mm: f64,
-    /// Angle of a cell of the dither matrix in the middle of the volume, degrees.
+    /// Visual angle of a cell of the dither matrix at the middle of the volume, in degrees.
     pub dither_cell_deg: f64,
 }
 
@@ -82,15 +83,15 @@ pub struct HeadStudy {
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Origin of the latency: "the volume's" or "given".
+    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given".
     pub latency_is: &'static str,
     /// Latency with which the volume shows changes of the scene, milliseconds.
     pub volume_latency_ms: Option<f64>,
-    /// Angle of a pixel in the middle of the head-mounted display, degrees.
+    /// Visual angle of a pixel in the middle of the head-mounted display, in degrees.
     pub hmd_pixel_deg: f64,
     /// Length of a voxel's edge within a slice, millimetres.
     pub voxel_mm: f64,
-    /// Errors at each instant, starting one latency after the beginning of the motion.
+    /// Errors at each instant. The first instant is one latency after the beginning of the motion.
     pub samples: Vec<HeadSample>,
 }
 
@@ -99,29 +100,29 @@ pub struct HeadStudy {
 pub struct HeadStudyConfig {
     /// Latency of the head-mounted display, milliseconds, or `None` for the latency of the volume.
     pub latency_ms: Option<f64>,
-    /// Length of the study, seconds.
+    /// Duration of the study, in seconds.
     pub seconds: f64,
     /// Number of instants in the study, 2 or more.
     pub instants: u32,
 }
 
-/// A volume with a moving head before it.
+/// A volume, with a moving head before it, for comparison with a head-mounted display.
 #[derive(Debug)]
 pub struct HeadComparison<'a> {
     volume: &'a Volume,
     motion: &'a dyn Motion,
     viewer: ViewerNumbers,
-    /// Matrix from the world of the motion, metres, to the volume, pixels.
+    /// Matrix from the world coordinates of the motion, in metres, to the coordinates of the volume, in pixels.
     into_volume: DMat4,
     latency_ps: u64,
-    /// Points of the scene and the voxels that show them, pixels of the volume.
+    /// Points of the scene, each with the voxel that shows it, in pixels of the volume.
     points: Vec<[DVec3; 2]>,
 }
 
 impl Volume {
-    /// Returns the latency with which the volume shows changes of the scene, milliseconds. The latency is the model's
-    /// time for one volume, plus on average half a turn until strobe 0 and a quarter turn until the plane is reached.
-    /// Returns `None` if the volume was not drawn by a GPU.
+    /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
+    /// model's time for one volume, plus two mean waits. The plane of the display waits half a turn for strobe 0, and a
+    /// quarter turn until the screen reaches it. Returns `None` if the volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -257,8 +258,8 @@ impl<'a> HeadComparison<'a> {
         }
     }
 
-    /// Returns the views of both eyes, left and right: the volume in the upper row, the head-mounted display in the
-    /// lower row. [`Look::picture`] describes `exposure`.
+    /// Returns the views of both eyes, left and right. The upper row shows the volume, and the lower row the
+    /// head-mounted display. [`Look::picture`] describes `exposure`.
     ///
     /// # Errors
     ///
@@ -280,7 +281,7 @@ impl<'a> HeadComparison<'a> {
         Ok(grid(&shown, 2))
     }
 
-    /// Returns an exposure for all pictures: the exposure of the left eye at an instant.
+    /// Returns the exposure of the left eye's view at an instant, for use in all pictures.
     ///
     /// # Errors
     ///
@@ -330,8 +331,8 @@ impl<'a> HeadComparison<'a> {
     }
 }
 
-/// Returns the position of a point in a head's flat picture of focal length 1, with x to the right and y down. Returns
-/// `None` if the point is behind the head.
+/// Returns the position of a point in a flat picture that the head sees. The picture has focal length 1, with x to the
+/// right and y down. Returns `None` if the point is behind the head.
 fn direction(head: &Pose, point: DVec3) -> Option<DVec2> {
     let seen = head.view_of(point);
     (seen.z < -1e-6).then(|| DVec2::new(seen.x, -seen.y) / -seen.z)
@@ -357,13 +358,14 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Returns azimuth and elevation of a position in degrees, in the convention of cameras.
+/// Returns azimuth and elevation of a position in degrees, measured as for cameras.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
-/// Returns vertices that the display shows, evenly spread over the list, each with the voxel that shows it.
+/// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
+/// spread over the scene's list.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands
@@ -376,7 +378,7 @@ fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     shown.iter().step_by(step).filter_map(|point| Some([*point, voxel_of(volume, *point)?])).collect()
 }
 
-/// Returns the middle of the pixel that shows a point, in the nearest slice of the first half turn.
+/// Returns the voxel that shows a point: the middle of the pixel in the nearest slice of the first half turn.
 fn voxel_of(volume: &Volume, point: DVec3) -> Option<DVec3> {
     let views = volume.display.views();
     let half = &views[..views.len().div_ceil(2)];

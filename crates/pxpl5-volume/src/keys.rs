@@ -1,11 +1,11 @@
-//! Access to settings by path.
+//! Access to the settings of a volume by path.
 
 use crate::choices::{ClipKind, Named};
 use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
 use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 
-/// Paths of choices, and of numbers outside the tables.
+/// Paths of the settings that are choices, and of the numbers that no table contains.
 const CHOICES: [&str; 12] = [
     "on",
     "clip.variant",
@@ -41,11 +41,11 @@ impl VolumeSettings {
         numbers.collect()
     }
 
-    /// Sets the setting at a path to a value. Errors name `place`, the origin of the value, such as `--set`.
+    /// Sets the setting at a path to a value. Errors name `place`, the source of the value, such as `--set`.
     ///
     /// # Errors
     ///
-    /// [`VolumeError::UnknownKey`] with the nearest path, or [`VolumeError::Value`].
+    /// [`VolumeError::UnknownKey`] with the most similar path, or [`VolumeError::Value`].
     pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), VolumeError> {
         let done = match path {
             "clip.variant" => self.set_clip(text),
@@ -78,7 +78,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Parses `NAME` or `NAME:NUMBER`, where the number is the clip's offset or bias.
+    /// Parses a clip as `NAME` or `NAME:NUMBER`. The number is the clip's offset or bias.
     fn set_clip(&mut self, text: &str) -> Result<(), String> {
         let (name, number) = match text.split_once(':') {
             Some((name, number)) => (name, Some(number)),
@@ -102,7 +102,7 @@ impl VolumeSettings {
         Ok(())
     }
 
-    /// Parses `clip`, `codes` or a number of pixels.
+    /// Parses the tolerance of bins: `clip`, `codes` or a number of pixels.
     fn set_tolerance(&mut self, text: &str) -> Result<(), String> {
         if let Ok(pixels) = text.parse::<f64>()
             && pixels.is_finite()

@@ -1,37 +1,37 @@
-//! All numbers of an experiment except those of the display and of the time model.
+//! All numbers of an experiment, except those of the display and of the time model.
 
 parameters::parameter_table! {
-    /// Offset and bias of the clips, and the precision of their planes.
+    /// Offset and bias of the methods that clip to a slice, and the precision of their planes.
     pub struct ClipNumbers {
-        /// Offset of the tapered and the parallel clip.
+        /// Distance by which the tapered and the parallel clip move planes outwards.
         offset_px: f64 = 0.5, "px", Assumed, 0.0..=2.0 in 0.0..=4096.0, "half a pixel, so that no slab is thinner than one";
-        /// Bias of the hyperbolic clip.
+        /// Constant that the hyperbolic clip adds to the product of the distances from both planes.
         bias_px2: f64 = 0.25, "px^2", Assumed, 0.0..=4.0 in 0.0..=16777216.0, "the square of the offset";
-        /// Fraction bits of the evaluated planes. A value of 53 means double precision.
+        /// Number of fraction bits with which plane equations are evaluated. 53 means double precision.
         plane_fraction_bits: 53, "bits", Assumed, 4..=53 in 0..=53, "the paper gives no value; fewer bits widen the dead zone";
     }
 }
 
 parameters::parameter_table! {
-    /// Parameters of the random eye and shear of each slice.
+    /// Parameters of the jittered projection, which gives each slice a random eye and a random shear.
     pub struct JitterNumbers {
-        /// Distance of the eye from the slice.
+        /// Distance of the random eye from the slice.
         eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the paper gives no value";
-        /// Radius of the disc in which the eye lies.
+        /// Radius of the disc in which the random eye lies.
         eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper gives no value";
-        /// Greatest shift by the shear at the face of the slab.
+        /// Greatest shift of a point by the shear, at the face of the slice's slab.
         shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper states a shift of less than a pixel";
     }
 }
 
 parameters::parameter_table! {
-    /// The eye of the perspective projection, the same for all slices.
+    /// Position and shear of the perspective eye, which is the same for all slices.
     pub struct EyeNumbers {
         /// Horizontal position of the perspective eye in the slice's coordinates.
         across_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "on the axis";
         /// Vertical position of the perspective eye in the slice's coordinates.
         up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
-        /// Distance of the eye from the slice.
+        /// Distance of the perspective eye from the slice.
         distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the same as with jitter";
         /// Horizontal shear, in pixels per pixel of distance from the slice.
         shear_across: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
@@ -41,17 +41,17 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Numbers of the tiles and of the batches of queries.
+    /// Size of the tiles, and number of slices in a batch of queries.
     pub struct TileNumbers {
-        /// Side of a tile. With 0, every pixel is packed and sent.
+        /// Side of a tile. With 0 there are no tiles: every pixel is packed and sent.
         size: 32, "px", Published, 32..=32 in 0..=4096, "the SpatialGL paper (P16)";
-        /// Number of slices between stencil clears and queries.
+        /// Number of slices that share a stencil clear and the queries of tiles.
         batch: 4, "slices", Published, 4..=4 in 1..=65536, "the SpatialGL paper (P18)";
     }
 }
 
 parameters::parameter_table! {
-    /// Numbers of sampling and halftoning.
+    /// Parameters of sampling and halftoning.
     pub struct DrawNumbers {
         /// Number of samples per pixel.
         samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more samples as too expensive; 4 and 16 for comparison";
@@ -61,19 +61,19 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// The angle at which a turn begins.
+    /// The angle at which the screen begins a turn.
     pub struct SweepNumbers {
-        /// Angle of slice 0.
+        /// Angle of slice 0 around the axis.
         phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "the paper gives no value";
     }
 }
 
 parameters::parameter_table! {
-    /// The viewer before the display, and the head-mounted display for comparison.
+    /// The viewer before the display, and the head-mounted display with which the volume is compared.
     pub struct ViewerNumbers {
         /// Diameter of the displayed volume.
         diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "the paper gives no value; 768 px over 10 inches in SPIE 4297";
-        /// Distance of the head from the middle of the volume at the beginning of a motion.
+        /// Distance from the head to the middle of the volume at the beginning of a motion.
         distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, the same as other views";
         /// Distance between both eyes.
         eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "the mean of human heads";

@@ -11,21 +11,21 @@ use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 /// Thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
 pub const SHEET_COLUMNS: u32 = 22;
 
-/// Distance between thumbnails of a sheet, pixels.
+/// Distance from one thumbnail of a sheet to the next, in pixels.
 const THUMBNAIL: u32 = 64;
 
 /// Fraction of the lit pixels of a view that stay below white.
 const BELOW_WHITE: f64 = 0.98;
 
-/// Batches per row of a tile map.
+/// Number of batches per row of a tile map.
 const MAP_COLUMNS: u32 = 11;
 
-/// The view of an eye at a volume.
+/// The position of an eye before a volume, and the options of its view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Position of the eye and size of its picture.
     pub camera: Camera,
-    /// Options of the view, such as a range of angles to leave out.
+    /// Options of the view, such as a range of angles in which nothing is shown.
     pub options: ViewOptions,
     /// True if the view shows the colours before halftoning.
     pub is_undithered: bool,
@@ -41,7 +41,7 @@ impl Look {
         Self { camera, options, is_undithered: false }
     }
 
-    /// Checks that the eye sees a display with these settings.
+    /// Checks that the camera can view a display with these settings.
     ///
     /// # Errors
     ///
@@ -51,7 +51,7 @@ impl Look {
         Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
     }
 
-    /// Returns the light of one turn that reaches the eye.
+    /// Returns the light that reaches the eye during one turn of the screen.
     ///
     /// # Errors
     ///
@@ -67,7 +67,8 @@ impl Look {
         }
     }
 
-    /// Returns the picture with the given exposure, or with its own.
+    /// Returns the picture with the given exposure. If none is given, the picture uses the result of
+    /// [`Self::exposure`].
     ///
     /// # Errors
     ///
@@ -82,7 +83,7 @@ impl Look {
         Ok(light.picture(exposure.unwrap_or_else(|| light.exposure(BELOW_WHITE))))
     }
 
-    /// Returns the exposure at which most of the picture stays below white.
+    /// Returns the exposure at which most of the lit pixels stay below white.
     ///
     /// # Errors
     ///
@@ -91,7 +92,7 @@ impl Look {
         Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
     }
 
-    /// Returns pictures of a turn around the volume, all with one exposure.
+    /// Returns pictures of the volume from viewpoints on a circle around it, all with one exposure.
     pub fn film<'a>(
         &self,
         volume: &'a Volume,
@@ -122,7 +123,7 @@ pub fn sheet(volume: &Volume) -> RgbImage {
     all
 }
 
-/// Returns a slice as it is lit, with each channel on or off.
+/// Returns a slice after halftoning, with each channel of a pixel on or off.
 ///
 /// # Panics
 /// If there is no such slice ([`Volume::check_slice`]).
@@ -172,8 +173,8 @@ pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
     beside(&[coloured(volume, slice), halftoned(volume, slice)])
 }
 
-/// Returns the tiles of every batch with one pixel per tile, white for occupied tiles. Batches follow each other row by
-/// row. Returns `None` without tiles.
+/// Returns a map of the tiles of every batch, with one pixel per tile. Occupied tiles are white. The batches are
+/// arranged row by row. Returns `None` if the volume was drawn without tiles.
 #[must_use]
 pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;
@@ -239,13 +240,13 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     shown
 }
 
-/// Returns pictures side by side. The result is as high as the highest.
+/// Returns the pictures side by side as one picture, which is as high as the highest of them.
 #[must_use]
 pub fn beside(pictures: &[RgbImage]) -> RgbImage {
     grid(pictures, pictures.len().max(1) as u32)
 }
 
-/// Returns pictures row by row with `columns` per row. Each place is as large as the largest picture.
+/// Returns the pictures in rows of `columns` as one picture. Each cell of this grid is as large as the largest picture.
 #[must_use]
 pub fn grid(pictures: &[RgbImage], columns: u32) -> RgbImage {
     let width = pictures.iter().map(RgbImage::width).max().unwrap_or(1);

@@ -1,4 +1,4 @@
-//! The report of a volume, with schema `pxpl5-volume/1`.
+//! The report of a volume. Its layout has the name and version `pxpl5-volume/1`.
 
 use crate::experiment::Volume;
 use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
@@ -7,10 +7,10 @@ use parameters::Value;
 use serde::Serialize;
 use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius, innermost_lit_radius};
 
-/// Width of the rings in which brightness is reported, pixels.
+/// Width in pixels of the rings around the axis in which lit pixels are counted.
 const RING_PX: u32 = 8;
 
-/// The report of one volume. All counts are exact. Times come from a model, and each is reported with its formula.
+/// The report of one volume. All counts are exact. Each time comes from a model and is reported with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeReport {
     /// Name and version of this record's layout.
@@ -19,7 +19,7 @@ pub struct VolumeReport {
     pub scene: String,
     /// Display for which the volume was drawn.
     pub display: DisplayReport,
-    /// Name of the clip with its offset or bias.
+    /// Name of the method that clips the scene to a slice, with its offset or bias.
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
@@ -27,58 +27,60 @@ pub struct VolumeReport {
     pub seed: u64,
     /// Name of the renderer that drew the slices.
     pub renderer: &'static str,
-    /// Work and bounds of the renderers of Pixel-Planes 5, or `None` if this computer drew the slices.
+    /// Work and times of the renderers of Pixel-Planes 5, or `None` if this computer drew the slices.
     pub pixel_planes: Option<PixelPlanesReport>,
-    /// Number of samples per pixel.
+    /// Number of samples per pixel of a slice.
     pub samples: u64,
     /// Number of triangles, lines and points of the scene.
     pub triangles: u64,
-    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
+    /// Number of slices drawn. It is less than the number of slices shown if slices are mirrored.
     pub slices_rendered: u64,
-    /// Number of times that the scene is drawn for a slice.
+    /// Number of times that the whole scene is drawn for each slice.
     pub passes: u64,
-    /// Number of primitives issued, over all slices and passes.
+    /// Number of primitives drawn, summed over all slices and passes.
     pub draws: u64,
-    /// Number of primitives that would be issued without bins.
+    /// Number of primitives that would be drawn without sorting them into bins.
     pub draws_unbinned: u64,
-    /// Number of entries in all bins.
+    /// Number of entries in all bins. A primitive has an entry in each bin that it touches.
     pub bin_memberships: u64,
     /// Number of fragments that reached the fragment program, or `None` for the renderers of Pixel-Planes 5, which
     /// count no fragments.
     pub fragments_generated: Option<u64>,
-    /// Number of fragments that lie in their slice's volume, or `None` for the renderers of Pixel-Planes 5.
+    /// Number of fragments that lie in the volume of their slice, or `None` for the renderers of Pixel-Planes 5.
     pub fragments_accepted: Option<u64>,
-    /// Number of pixels added to connect intersections, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with slices, which is beyond the paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
-    /// Number of occupied tiles, summed over batches.
+    /// Number of tiles with a drawn pixel, summed over all batches of slices.
     pub tiles_occupied: u64,
-    /// Percentage of queried tiles that are occupied.
+    /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,
-    /// Number of tile queries of all batches.
+    /// Number of occlusion queries of tiles, for all batches of slices.
     pub queries: u64,
-    /// Number of stencil clears: one for each batch.
+    /// Number of stencil clears: one for each batch of slices.
     pub stencil_clears: u64,
     /// Size of all drawn slices with 32 bits per pixel, bytes.
     pub bytes_unpacked: u64,
     /// Size of all drawn slices in packed form, bytes.
     pub bytes_packed: u64,
-    /// Number of bytes sent: packed words of occupied tiles, and the maps of tiles.
+    /// Number of bytes sent to the projector: packed words of occupied tiles, and the maps of tiles.
     pub bytes_sent: u64,
-    /// Percentage of the bits of unpacked pixels that the projector does not use.
+    /// Percentage of the bits in unpacked pixels that the projector does not use.
     pub waste_percent: f64,
-    /// Number of pixels lit in any colour, in all slices.
+    /// Number of pixels lit in any colour, summed over all slices.
     pub lit_voxels: u64,
-    /// Percentage of samples on the mesh's intersections with the slices that have a drawn pixel beside them.
+    /// Connectedness of surfaces: percentage of samples on the intersections of mesh and slices that have a drawn pixel
+    /// beside them.
     pub connected_percent: f64,
     /// Number of lit pixels by their distance from the axis.
     pub brightness_by_radius: Brightness,
-    /// Radius in pixels within which no slice can show a point of any scene. `None` if no slice can show anything.
+    /// Radius in pixels around the axis within which no slice can show a point of any scene. `None` if no slice can
+    /// show anything.
     pub dead_zone_radius_px: Option<u32>,
-    /// Distance in pixels from the axis to the nearest lit pixel, or `None` for a dark volume.
+    /// Distance in pixels from the axis to the nearest lit pixel, or `None` if no pixel of the volume is lit.
     pub innermost_lit_px: Option<u32>,
-    /// Times by the model of a host with a GPU, or `None` for the renderers of Pixel-Planes 5.
+    /// Times of one volume by the model of a host with a GPU, or `None` for the renderers of Pixel-Planes 5.
     pub model_ms: Option<ModelTimes>,
     /// Volumes per second if processor, GPU and bus work one after the other, or `None` for the renderers of
     /// Pixel-Planes 5.
@@ -90,11 +92,11 @@ pub struct VolumeReport {
     pub outside_volume: u64,
     /// Hash of all bits of the volume, in hexadecimal digits.
     pub volume_hash: String,
-    /// Numbers that differ from the papers' values.
+    /// Settings whose numbers differ from the paper's values.
     pub overrides: Vec<Override>,
     /// Settings that go beyond the paper.
     pub beyond_paper: Vec<&'static str>,
-    /// Time that this computer took, seconds.
+    /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
 }
 
@@ -104,15 +106,16 @@ pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.
     #[serde(flatten)]
     pub counts: SliceBounds,
-    /// Formulas by which the numbers in `bounds` and `simulated` are computed.
+    /// Formulas for the numbers in `bounds` and `simulated`.
     pub definition: &'static str,
-    /// Volumes per second for several machines, each limited by its slowest part alone.
+    /// Volumes per second of several machines. The slowest part alone limits each rate.
     pub bounds: Vec<BoundRow>,
     /// Results of simulating the same machines event by event. The list is empty if the volume's tiles cannot be sent.
     pub simulated: Vec<SimulatedRow>,
 }
 
-/// Numbers of renderers and graphics processors for the bounds. The third pair is the largest machine that was built.
+/// Pairs of the numbers of renderers and graphics processors for which bounds are reported. The third pair is the
+/// largest machine that was built.
 const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
 
 const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones and of the moves to the backing store / 40 MHz; ring: words of commands and of occupied tiles with \
@@ -145,16 +148,16 @@ pub struct DisplayReport {
     pub volumes_hz: f64,
 }
 
-/// The numbers of lit pixels in rings around the axis.
+/// The numbers of lit pixels in rings around the axis of the display.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Brightness {
     /// Width of each ring around the axis, pixels.
     pub ring_px: u32,
-    /// Number of lit pixels of all slices in each ring, from the axis outwards.
+    /// Number of lit pixels in each ring, over all slices. The innermost ring is first.
     pub lit_voxels: Vec<u64>,
 }
 
-/// A part of the model's time with its formula.
+/// One part of the modelled time, with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelPart {
     /// Time for one volume, milliseconds.
@@ -163,16 +166,16 @@ pub struct ModelPart {
     pub definition: &'static str,
 }
 
-/// The times of the model for one volume, each with its formula.
+/// The modelled times for one volume, each with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelTimes {
-    /// Processor time for vertices, bins and calls.
+    /// Processor time for vertices, sorting into bins, and graphics calls.
     pub cpu: ModelPart,
     /// GPU time for vertices, fragments, clears, queries and packing.
     pub gpu: ModelPart,
     /// Bus time for transfers from the GPU and to the projector.
     pub bus: ModelPart,
-    /// Bus time for the same volume sent as 32-bit pixels, without queries and packing.
+    /// Bus time if the same volume were sent as 32-bit pixels, without queries and packing.
     pub bus_unpacked: ModelPart,
 }
 
@@ -183,7 +186,7 @@ pub struct Override {
     pub path: String,
     /// Value of the number in this volume.
     pub value: Value,
-    /// Value that the paper gives or allows.
+    /// Value or range that the paper gives.
     pub papers: Value,
 }
 
@@ -254,7 +257,7 @@ impl Volume {
         }
     }
 
-    /// Returns the percentage of the mesh's intersections with the slices that is shown.
+    /// Returns the percentage of samples on the intersections of mesh and slices that have a drawn pixel beside them.
     #[must_use]
     pub fn connected_percent(&self) -> f64 {
         connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())
@@ -277,7 +280,7 @@ impl Volume {
     }
 }
 
-/// Returns the percentage of the unpacked bits that the projector does not use.
+/// Returns the percentage of the bits in unpacked pixels that the projector does not use.
 fn waste_percent(bytes_unpacked: u64, settings: &VolumeSettings) -> f64 {
     let display = &settings.display;
     let slices = if settings.strobes == spatialgl::Strobes::Mirror { display.slices / 2 } else { display.slices };
@@ -300,7 +303,7 @@ impl DisplayReport {
 }
 
 impl VolumeSettings {
-    /// Returns the numbers that differ from the papers' values.
+    /// Returns the settings whose numbers differ from the paper's values.
     #[must_use]
     pub fn overrides(&self) -> Vec<Override> {
         let changed = self.numbers().into_iter().filter(|(_, entry)| entry.value != entry.info.papers);

@@ -1,4 +1,4 @@
-//! The settings of an experiment, each with a path.
+//! The settings of an experiment with a volume. Each setting has a path such as `clip.bias_px2`.
 
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::error::VolumeError;
@@ -12,13 +12,12 @@ use spatialgl::{
 
 /// All settings that determine a volume, and the numbers of its time model.
 ///
-/// [`Self::paper`] has the paper's values where the paper gives them. The other values are our choices within their
-/// ranges.
+/// [`Self::paper`] has the paper's values where the paper gives them. We chose the other values within their ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSettings {
     /// Number of slices, width, height and spin of the display.
     pub display: PerspectaConfig,
-    /// Angle of the first slice.
+    /// Angle around the axis of the first slice of a turn.
     pub sweep: SweepNumbers,
     /// Direction in which the screen turns.
     pub rotation: Rotation,
@@ -26,9 +25,9 @@ pub struct VolumeSettings {
     pub clip: ClipKind,
     /// Offset, bias and precision of the clips.
     pub clip_numbers: ClipNumbers,
-    /// Rule for points in the planes between slices.
+    /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
-    /// Projection of points off a slice onto its image.
+    /// Projection that maps points near a slice to the image of the slice.
     pub projection: ProjectionKind,
     /// Parameters of the jittered projection.
     pub jitter: JitterNumbers,
@@ -38,29 +37,29 @@ pub struct VolumeSettings {
     pub seed: u64,
     /// Method of sorting primitives into bins.
     pub binning: Binning,
-    /// Distance from a plane within which a vertex counts for both sides.
+    /// Distance from a plane within which a vertex counts as lying on both sides.
     pub bin_tolerance: BinTolerance,
-    /// Side of tiles, and length of batches.
+    /// Size of tiles, and number of slices per batch of queries.
     pub tile: TileNumbers,
     /// Number of samples and size of the dither matrix.
     pub draw: DrawNumbers,
-    /// Pixels of a slice that a primitive covers.
+    /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Slices that are drawn, and slices that are mirrored.
+    /// Rule for the slices of a turn that are drawn, and those that are mirrored copies.
     pub strobes: Strobes,
-    /// Rule for several fragments on one pixel.
+    /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
-    /// True if the scene is lit by its light.
+    /// True if the scene is shaded by its light source.
     pub is_lit: bool,
     /// Hardware that draws the slices.
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Viewer before the display, without influence on the volume.
+    /// Position of the viewer before the display. It has no influence on the volume.
     pub viewer: ViewerNumbers,
 }
 
-/// A table with the first part of its paths.
+/// A table of parameters, and the first part of their paths.
 pub(crate) type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl VolumeSettings {
@@ -92,7 +91,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns all tables of numbers with the first part of their paths.
+    /// Returns all tables of parameters, each with the first part of their paths.
     pub(crate) fn tables(&self) -> [NamedTable<'_>; 9] {
         [
             ("display", &self.display),
@@ -121,7 +120,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns the clip as text for options and reports: its name, then its offset or bias after a colon.
+    /// Returns the clip as text for options and reports: its name, and after a colon its offset or bias.
     #[must_use]
     pub fn clip_text(&self) -> String {
         let name = self.clip.name();
@@ -133,7 +132,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns the projection with its eye or its jitter.
+    /// Returns the projection, with the position of its eye or the parameters of its jitter.
     #[must_use]
     pub const fn slice_projection(&self) -> Projection {
         match self.projection {
@@ -165,7 +164,7 @@ impl VolumeSettings {
         self.display.width as f64 / 2.0
     }
 
-    /// Returns the display for the pipeline.
+    /// Returns the display as the rendering pipeline needs it.
     ///
     /// # Errors
     ///

@@ -3,7 +3,8 @@
 use spatialgl::{Task, Workers};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A wrapper of workers that calls a function with the number of finished tasks after each task.
+/// A wrapper of workers. After each task, it calls a function with the number of finished tasks and the number of all
+/// tasks.
 pub struct Counted<'a> {
     inner: &'a dyn Workers,
     finished: &'a (dyn Fn(u64, u64) + Sync),

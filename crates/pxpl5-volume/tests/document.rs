@@ -1,4 +1,5 @@
-//! The paper's figures: every formula is met, statements without numbers are confirmed, and the document is up to date.
+//! Tests of the paper's figures. Every formula gives the printed value, statements without numbers are confirmed, and
+//! the document is up to date.
 
 use pxpl5_scene::builtin;
 use pxpl5_volume::figures::{Drawing, Figures, all, drawings, markdown};
@@ -23,7 +24,8 @@ fn every_figure_of_the_specification_has_a_row() {
     assert_eq!((ids[0], FIGURES.definitions[0].definition.id), ("P2", "P1"), "printed ones first, by number");
 }
 
-/// Figures without a scene must be met. Measured figures are listed as missed if they are not met.
+/// Checks that all figures without a scene agree with the paper. Figures measured on a scene must be listed as missed
+/// if they do not agree.
 #[test]
 fn every_row_without_a_scene_is_met() {
     for row in FIGURES.figures.iter().filter(|row| row.scene.is_none()) {
@@ -31,7 +33,8 @@ fn every_row_without_a_scene_is_met() {
     }
 }
 
-/// Some numbers cannot change in a run: inputs of the paper (section 2 of its list), and results of plain arithmetic.
+/// Checks the numbers that no run can change: inputs from section 2 of the paper's list, and results of plain
+/// arithmetic. They have no verdict.
 #[test]
 fn a_number_that_no_run_can_change_is_a_definition_and_has_no_verdict() {
     let inputs = ["P1", "P6", "P13", "P16", "P18", "P20", "D12"];
@@ -69,7 +72,8 @@ fn the_document_is_fresh() {
     assert!(kept == markdown(&FIGURES), "stale: run `pxpl5 volume figures --write docs/volumetric.md`");
 }
 
-/// Figures 4 to 12; the dilated volumes have more of slice 1's colour than the exact one, and the taper less at the rim.
+/// Checks the drawings of figures 4 to 12. The enlarged volumes have more pixels in the colour of slice 1 than the
+/// exact one. The tapered volume has fewer at the rim.
 #[test]
 fn the_drawings_show_what_their_captions_say() {
     let drawn = drawings(&builtin("mig").expect("built in"), &Threads::all()).expect("valid");

@@ -1,4 +1,4 @@
-//! A head before the volume: errors of a late head-mounted display, and errors of voxels.
+//! Tests of a moving head before the volume: errors of a late head-mounted display, and errors of voxels.
 
 use pxpl5_scene::builtin;
 use pxpl5_volume::heads::{HeadComparison, HeadStudyConfig};
@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Slide, Still};
 
-/// A volume of the Mig with 36 orthographic slices of 128 x 96 pixels.
+/// A volume of the Mig, a test scene of 417 triangles, with 36 orthographic slices of 128 x 96 pixels.
 static VOLUME: LazyLock<Volume> = LazyLock::new(|| {
     let mut settings = VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
     for (path, text) in [("display.slices", "36"), ("display.width", "128"), ("display.height", "96")] {
@@ -24,7 +24,7 @@ fn study(motion: &dyn Motion, question: &HeadStudyConfig) -> pxpl5_volume::heads
     before.study(question).expect("valid")
 }
 
-/// For a still head the head-mounted picture has no error, but the voxels still have errors.
+/// Checks that a still head sees no error on the head-mounted display, and still sees errors of the voxels.
 #[test]
 fn a_still_head_has_no_error_of_latency() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
@@ -37,8 +37,9 @@ fn a_still_head_has_no_error_of_latency() {
     }
 }
 
-/// A head that slides right at 0.4 m/s moves 20 mm in 50 ms. From 508 mm this is atan(20/508) = 2.25 degrees for the
-/// middle, and about the same for the mean over points around it. The errors grow with the latency.
+/// Checks a head that slides to the right at 0.4 m/s, which is 20 mm in 50 ms. At a distance of 508 mm the error is
+/// atan(20/508) = 2.25 degrees for the middle. The mean over points around the middle is about the same. The errors
+/// grow with the latency.
 #[test]
 fn a_sliding_head_is_off_by_its_way_over_the_distance() {
     let slide = Slide::right_at(0.4);
@@ -52,7 +53,8 @@ fn a_sliding_head_is_off_by_its_way_over_the_distance() {
     assert!(later.azimuth_deg > first.azimuth_deg, "to the right is towards +x of the volume");
 }
 
-/// A turn of 60 degrees a second with 50 ms: 3 degrees, exactly, about the head itself (eyes are 31 mm off the turn's axis).
+/// Checks a head that turns by 60 degrees a second, with a latency of 50 ms. The error is exactly 3 degrees, seen from
+/// the head. The eyes are 31 mm beside the axis of the turn.
 #[test]
 fn a_turning_head_is_off_by_its_rate_times_the_latency() {
     let first = study(&Pan::at(60.0), &HeadStudyConfig { seconds: 0.01, ..QUESTION }).samples[0];
@@ -60,9 +62,9 @@ fn a_turning_head_is_off_by_its_rate_times_the_latency() {
     assert!((found - 3.0).abs() < 0.2, "{found}");
 }
 
-/// In the plane of a slice a voxel is at most half a pixel off along both edges. Across the plane it is at most half
-/// the distance to the next slice: 64 px x sin(5 degrees) = 5.58 px at the rim (36 slices are 10 degrees apart). One
-/// pixel is 254/128 mm.
+/// Checks the distance between points and their voxels. In the plane of a slice, it is at most half a pixel along both
+/// edges. Across the plane it is at most half the distance to the next slice. At the rim this is 64 px x sin(5 degrees)
+/// = 5.58 px, because 36 slices are 10 degrees apart. One pixel is 254/128 mm.
 #[test]
 fn voxels_are_off_by_their_own_size_and_no_more() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);

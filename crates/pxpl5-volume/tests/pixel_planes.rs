@@ -1,4 +1,5 @@
-//! Slices on the renderers of Pixel-Planes 5: the program's clocks, both pixel arrays, the host's picture, the bounds.
+//! Tests of slices on the renderers of Pixel-Planes 5. They cover clocks, both pixel arrays, agreement with the host's
+//! picture, and lower bounds of the times.
 
 use pxpl5_renderer::isa::Operand;
 use pxpl5_renderer::{BitSerial, CommandKind, EMPTY_PLANE, Lanes, Layout, PixelArray};
@@ -12,7 +13,7 @@ use pxpl5_volume::spatialgl::{
 };
 use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 
-/// A corner: position in sixteenths of a pixel, distance from the slice in pixels, and colour.
+/// A corner of a triangle: position in sixteenths of a pixel, distance from the slice in pixels, and colour.
 type Corner = ([i32; 2], f64, [u8; 3]);
 
 const SIZE: [u32; 2] = [768, 768];
@@ -42,7 +43,8 @@ fn triangles() -> Vec<[Corner; 3]> {
     (1..=36).map(|n| [0, 1, 2].map(|i| corner(n, i))).collect()
 }
 
-/// Returns the same triangle in world coordinates. In slice 0 of a display without phase, u, v and s are x, y and z.
+/// Returns a recording of one triangle in world coordinates. In slice 0 of a display without phase, u, v and s are x, y
+/// and z.
 fn recording(corners: &[Corner; 3]) -> CommandBuffer {
     let vertices = corners.map(|([x, y], off, colour)| {
         let place = [f64::from(x) / 16.0 - 384.0, 384.0 - f64::from(y) / 16.0, off];
@@ -63,7 +65,8 @@ fn drawn(renderer: &dyn SliceRenderer, commands: &CommandBuffer) -> SliceImage {
     image
 }
 
-/// Enable all 6, three edges 108, the hyperbola 52, three colours 72: 238 clocks, 5.95 us at 40 MHz, 38 words.
+/// Checks the clocks of a slice triangle: enable all 6, three edges 108, the hyperbola 52, three colours 72. The sum is
+/// 238 clocks, 5.95 us at 40 MHz, and the command has 38 words.
 #[test]
 fn a_slice_triangle_takes_238_clocks_and_38_words() {
     let layout = Layout::rendering_control_phong();
@@ -72,7 +75,8 @@ fn a_slice_triangle_takes_238_clocks_and_38_words() {
     assert_eq!(40_000_000 / SliceTriangle::clocks(&layout), 168_067);
 }
 
-/// The exact value of the hyperbola at the middle of every pixel, to the rounding of its coefficients.
+/// Checks that the command's quadratic is the exact hyperbola at the middle of every pixel, except for the rounding of
+/// its coefficients.
 #[test]
 fn the_commands_quadratic_is_the_hyperbola_at_the_middle_of_pixels() {
     let one = f64::from(1 << 26);
@@ -98,8 +102,8 @@ fn command(corners: &[Corner; 3]) -> SliceTriangle {
     SliceTriangle::of_corners(corners, SIZE, wedge(), 0.25).expect("it has an area")
 }
 
-/// The arrays draw the host's pixels, with colours equal to one level, wherever the hyperbola is farther from zero than
-/// its rounding error. Both arrays agree everywhere.
+/// Checks that the arrays draw the same pixels as the host wherever the hyperbola exceeds its rounding error. Colours
+/// differ by at most one level. Both arrays agree everywhere.
 #[test]
 fn both_pixel_arrays_draw_what_the_host_draws() {
     let lanes = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
@@ -131,7 +135,8 @@ fn both_pixel_arrays_draw_what_the_host_draws() {
     assert!(undecided < lit / 100, "{undecided} of {lit} pixels lie on the hyperbola's edge");
 }
 
-/// 36 regions of a slice, each selected (6 clocks), cleared (62) and halftoned (72); a triangle in one region takes 238 more.
+/// Checks the clocks of the 36 regions of a slice: each is selected (6 clocks), cleared (62) and halftoned (72). A
+/// triangle in one region takes 238 more.
 #[test]
 fn clocks_and_words_are_those_of_the_programs() {
     let renderer = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
@@ -147,8 +152,8 @@ fn clocks_and_words_are_those_of_the_programs() {
     assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);
 }
 
-/// The specification's numbers: a tile 7.2 us on the ring, 10 % of the tiles of 198 slices 82 ms of one channel and 10.3 ms
-/// of eight; renderers and processors divide their work.
+/// Checks the specification's numbers. A tile takes 7.2 us on the ring. 10 % of the tiles of 198 slices take 82 ms of
+/// one channel, or 10.3 ms of eight. Renderers and processors divide their work.
 #[test]
 fn bounds_follow_from_counts() {
     let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };
@@ -168,8 +173,9 @@ fn bounds_follow_from_counts() {
     assert!((copying.ms[0] - row.ms[0] - 1_000.0 * 0.051 / 10.0).abs() < 1e-6);
 }
 
-/// The program of the halftone: enable all 6, compare eight bits 12, store Enable 6, for three channels; 12 words. On both arrays it
-/// gives the bits of the host's halftone, for every level on every threshold of Bayer's matrix.
+/// Checks the halftone program: enable all (6 clocks), compare eight bits (12) and store Enable (6), for each of three
+/// channels. The program has 12 words. Both arrays give the bits of the host's halftone, for every level and threshold
+/// of Bayer's matrix.
 #[test]
 fn the_halftones_program_gives_the_hosts_bits_in_72_clocks() {
     let layout = Layout::rendering_control_phong();
@@ -208,8 +214,8 @@ fn halftone_on(array: &mut impl PixelArray, layout: &Layout, matrix: &Halftone) 
     }
 }
 
-/// A volume of few slices is drawn by the renderers and sent. Every tile arrives at the display without a fault. No
-/// part is faster than its bound. One renderer with one processor needs about as long as the slower of the two.
+/// Checks a simulated volume of few slices. Every tile arrives at the display without a fault. No part is faster than
+/// its lower bound. One renderer with one processor needs about as long as the slower of the two.
 #[test]
 fn a_simulated_volume_arrives_whole_and_is_never_faster_than_its_bounds() {
     let mut settings = settings();

@@ -1,4 +1,4 @@
-//! Settings by path: accepted values, and errors for other values.
+//! Tests of settings by path: accepted values, and errors for other values.
 
 use pxpl5_volume::spatialgl::{BinTolerance, SliceClip};
 use pxpl5_volume::{VolumeError, VolumeSettings};
@@ -73,7 +73,8 @@ fn a_tolerance_is_a_name_or_pixels() {
     assert!(refused("bins.tolerance=-1").contains("clip, codes or a number of pixels"));
 }
 
-/// The bad inputs of section 9, each with what, where, expected and found.
+/// Checks the errors for the invalid inputs of section 9. Each error says what is wrong and where, and names the
+/// expected and the found value.
 #[test]
 fn bad_input_says_what_was_expected_and_what_was_found() {
     for (assignment, parts) in [

@@ -1,4 +1,4 @@
-//! Volumes and their reports on small displays: counts from formulas, and pixels of pictures.
+//! Tests of volumes and their reports on small displays: counts from formulas, and pixels of pictures.
 
 use pxpl5_scene::{Scene, builtin};
 use pxpl5_volume::compare::{Viewpoint, compare, variant_count};
@@ -24,7 +24,7 @@ fn drawn(settings: &VolumeSettings) -> Volume {
     Volume::draw(settings, &mig(), &OneThread).expect("valid")
 }
 
-/// Fields of a report, from the list of section 9.
+/// Fields that every report must have, from section 9 of the specification.
 const FIELDS: [&str; 35] = [
     "display",
     "clip",
@@ -76,7 +76,8 @@ fn the_report_has_every_field_of_the_specification() {
     }
 }
 
-/// 36 slices of 128 x 96: 4 bytes a pixel, half a byte packed, 4 x 3 tiles of 32 px in 9 batches.
+/// Checks the counts of 36 slices of 128 x 96 pixels. A pixel takes 4 bytes, or half a byte packed. There are 4 x 3
+/// tiles of 32 px in 9 batches.
 #[test]
 fn counts_follow_from_the_display() {
     let report = drawn(&small()).report();
@@ -123,7 +124,7 @@ fn the_hash_depends_on_the_seed_and_not_on_threads() {
     assert_ne!(hash(&small()), hash(&other));
 }
 
-/// The pixels of pictures equal the bit planes and the colours. Mirrored slices are shown reversed.
+/// Checks that the pixels of pictures equal the bit planes and the colours. Mirrored slices are shown reversed.
 #[test]
 fn pictures_show_the_slices() {
     for strobes in [Strobes::Each, Strobes::Mirror] {
@@ -150,7 +151,8 @@ fn pictures_show_the_slices() {
     }
 }
 
-/// 22 thumbnails of 64 px in a row; the tile map shows as many white squares as tiles are counted.
+/// Checks that a sheet has rows of 22 thumbnails of 64 px. A tile map has as many white pixels as occupied tiles are
+/// counted.
 #[test]
 fn sheets_and_maps_show_everything() {
     let volume = drawn(&small());
@@ -171,7 +173,8 @@ fn a_slice_that_is_not_there_is_refused() {
     assert_eq!(error.to_string(), "slice: expected 0 to 35, found 36");
 }
 
-/// Six clips by three projections, and three more; passes as published (P5); dilated clips accept at least as much.
+/// Checks the variants of a comparison: six clips with three projections, and three more. Passes are as published (P5),
+/// and clips with enlarged volumes accept at least as many fragments.
 #[test]
 fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
     let viewpoint = Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };

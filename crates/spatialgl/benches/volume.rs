@@ -1,4 +1,4 @@
-//! Host time of a volume of 198 distinct slices of the head scene, with the ratios of interest measured in one process.
+//! Host time of a volume of 198 distinct slices of the head scene. Measurements to be compared run in one process.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
@@ -32,8 +32,8 @@ fn draw(display: &SweptDisplay, commands: &CommandBuffer, config: &VolumeConfig,
     frame.stats.fragments_accepted
 }
 
-/// Compares bins and tiles with brute force, and one thread with two. The volume has 396 slices, of which 198 are
-/// drawn.
+/// Compares bins and tiles with drawing without them, and one thread with two. The volume has 396 slices, of which 198
+/// are drawn.
 fn volumes(c: &mut Criterion) {
     let commands = head();
     let mut group = c.benchmark_group("volume");
@@ -50,7 +50,7 @@ fn volumes(c: &mut Criterion) {
     group.finish();
 }
 
-/// The attributes that are interpolated linearly over a triangle.
+/// The values that are interpolated linearly over a triangle.
 #[derive(Clone, Copy)]
 struct Carried<const N: usize>([f32; N]);
 
@@ -66,8 +66,8 @@ impl<const N: usize> Interpolate for Carried<N> {
     }
 }
 
-/// A pipeline of `euc` for one slice, with the hyperbola in the fragment program. `euc` 0.5 has no discard, so rejected
-/// fragments are drawn as zero.
+/// A rendering pipeline of the crate `euc` for one slice, with the hyperbola in the fragment program. `euc` 0.5 cannot
+/// discard fragments, so rejected fragments are drawn as zero.
 struct EucSlice<'a> {
     commands: &'a CommandBuffer,
     view: &'a SliceView,
@@ -81,7 +81,7 @@ impl<'a> EucSlice<'a> {
         Self { commands, view, planes: [planes.a, planes.b], accepted: Cell::new(0) }
     }
 
-    /// Clip coordinates of a vertex, and its distances from the two boundary planes.
+    /// Returns the clip coordinates of a vertex, and its distances from the two boundary planes.
     #[inline(always)]
     fn placed(&self, vertex: u32) -> ([f32; 4], [f32; 2]) {
         let world = self.commands.positions()[vertex as usize];
@@ -115,8 +115,8 @@ impl euc::Pipeline for EucSlice<'_> {
     }
 }
 
-/// A pipeline for the same slice that records the pixels of accepted fragments. Window coordinates are passed to the
-/// fragment, because the target does not show rejected fragments.
+/// A rendering pipeline for the same slice, which records the pixels of accepted fragments. The fragment program
+/// receives window coordinates, because the target does not show rejected fragments.
 struct EucCoverage<'a> {
     slice: EucSlice<'a>,
     covered: RefCell<Vec<bool>>,
@@ -144,7 +144,8 @@ impl euc::Pipeline for EucCoverage<'_> {
     }
 }
 
-/// Returns the number of fragments that `euc` accepts in 198 slices, without bins, dither and packing.
+/// Draws 198 slices with the crate `euc`, without bins, dither and packing. Returns the number of fragments that `euc`
+/// accepts.
 fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32], target: &mut Buffer2d<u32>) -> u64 {
     let views = display.views()[..198].iter();
     let accepted = views.map(|view| {
@@ -156,7 +157,7 @@ fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32]
     accepted.sum()
 }
 
-/// Greatest percentage of covered pixels that only one of the two rasterizers may cover. `euc` works in single
+/// Largest allowed percentage of covered pixels that only one of the two rasterizers covers. `euc` works in single
 /// precision and has another rule for samples on edges.
 const MOST_DIFFERING_PERCENT: f64 = 2.0;
 
@@ -185,7 +186,7 @@ fn differing_percent(
     100.0 * one_alone as f64 / either as f64
 }
 
-/// Measures the same slices with a published rasterizer that has the clip in its fragment program.
+/// Measures the same slices with the published rasterizer `euc`, which tests the clip in its fragment program.
 fn peers(c: &mut Criterion) {
     let scene = builtin("head").expect("built in");
     let commands = head();

@@ -1,10 +1,10 @@
-//! Sine and cosine of fractions of a turn, with symmetries that hold in every bit.
+//! Sine and cosine of fractions of a turn, with symmetries that are exact to the last bit.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Returns sine and cosine of `numerator / denominator` of a turn.
 ///
-/// The angle is reduced to the first eighth of a turn with integers. Adding half a turn therefore gives the exact
+/// The angle is reduced to the first eighth of a turn with integers. Therefore half a turn more gives the exact
 /// negative of both values, a quarter turn exchanges them, and at 45 degrees they are equal.
 ///
 /// # Panics

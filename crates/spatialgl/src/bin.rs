@@ -1,63 +1,65 @@
-//! Binning: finds the groups of slices that a primitive can touch, once per volume, from the signs of a few planes.
+//! Binning: finds for each primitive the groups of slices that can show it. This is done once per volume, from the
+//! signs of a few plane equations.
 //!
 //! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
 //! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
-//! the whole primitive on their negative side. A region is defined by the signs of its points. A primitive cannot touch
-//! a region if one plane separates them.
+//! the whole primitive on their negative side. A region of space is defined by the signs of its points. A primitive
+//! cannot touch a region if one plane separates the primitive from the region.
 
 use serde::{Deserialize, Serialize};
 
-/// A convex region bounded by planes, described by the signs of its points.
+/// A convex region bounded by planes. It is described by the signs that plane equations have at its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BinRegion {
-    /// Signs of the region's points: bit i is set if they lie on the positive side of plane i.
+    /// Signs of the plane equations in the region: bit i is set if the region lies on the positive side of plane i.
     pub signs: u32,
-    /// Planes that bound the region: bit i stands for plane i.
+    /// Planes that bound the region: bit i is set if plane i is a bound.
     pub bounds: u32,
-    /// Group of the region, as a bit number of [`SliceView::bins`](crate::SliceView::bins).
+    /// Group of slices that draw the region, as a bit number of [`SliceView::bins`](crate::SliceView::bins).
     pub group: u32,
 }
 
-/// The planes and regions by which a display sorts primitives.
+/// The planes and regions by which primitives are sorted for a display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
     /// Planes (a, b, c, d), positive where a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
     /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
-    /// Greatest distance outside its exact volume at which a slice still shows points, pixels.
+    /// Greatest distance in pixels from a slice's exact volume at which the slice still shows points.
     pub tolerance: f64,
 }
 
-/// The planes that decide about the bins of a primitive.
+/// The choice of the planes that decide which bins a primitive is in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// Only the planes that bound a region decide, which is weaker: the first version of the paper.
+    /// Only the planes that bound a region decide, so a primitive is in more bins. This is the first version of the
+    /// paper.
     TwoPlanes,
     /// All planes of the layout decide for each region.
     #[default]
     AllPlanes,
 }
 
-/// The distance from a plane within which a vertex counts for both sides of the plane.
+/// The distance from a plane within which a vertex counts as lying on both sides of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BinTolerance {
-    /// The distance by which the display's clip dilates its slices, so that no fragment is lost.
+    /// The distance by which the display's clip enlarges the slice volumes. With this tolerance, no fragment is lost.
     #[default]
     OfTheClip,
-    /// The paper's codes: zero is positive, and no vertex counts for both sides. These codes lose fragments of dilated
-    /// clips.
+    /// Zero, as in the paper's codes: zero is positive, and no vertex counts as lying on both sides. These codes lose
+    /// fragments if the clip enlarges the slice volumes.
     Codes,
     /// A fixed distance in pixels, independent of the clip.
     Pixels(f64),
 }
 
 impl BinLayout {
-    /// Returns a layout with a single bin for everything.
+    /// Returns a layout with a single bin, which contains all primitives.
     #[must_use]
     pub fn one() -> Self {
         Self { planes: Vec::new(), regions: vec![BinRegion { signs: 0, bounds: 0, group: 0 }], tolerance: 0.0 }
@@ -80,9 +82,9 @@ impl BinLayout {
         bits.fold(0, |code, bit| code | bit)
     }
 
-    /// Returns the groups, one bit each, that a primitive with these corners may touch.
+    /// Returns the groups of slices, one bit each, that may show a primitive with these corners.
     ///
-    /// `extra` pixels are added to the tolerance for a primitive that is larger than its corners.
+    /// `extra` pixels are added to the tolerance for a primitive that extends beyond its corners.
     #[must_use]
     pub fn groups(&self, corners: &[[f64; 3]], binning: Binning, tolerance: BinTolerance, extra: f64) -> u64 {
         let codes = Codes::of(self, corners, tolerance, extra);
@@ -94,7 +96,8 @@ impl BinLayout {
         touched.fold(0, |groups, region| groups | 1 << region.group)
     }
 
-    /// Returns the regions, one bit each in their order, that a primitive with these corners may touch by all planes.
+    /// Returns the regions, one bit each in the layout's order, that a primitive with these corners may touch. All
+    /// planes of the layout decide.
     #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
@@ -103,14 +106,14 @@ impl BinLayout {
     }
 }
 
-/// Signs of the sectors from +x to +z. The highest of the four binary digits is bit 3 (x + z).
+/// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector, one bit for each of the two planes.
+/// Planes that bound each sector. Each of its two planes has one bit.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
-/// The combined codes of a primitive. `and` has the planes with the whole primitive on their positive side, `or` those
-/// with a part of it.
+/// The combined codes of a primitive. A bit of `and` is set if the whole primitive lies on the positive side of the
+/// plane. A bit of `or` is set if any part of it does.
 struct Codes {
     and: u32,
     or: u32,
@@ -142,11 +145,11 @@ impl Codes {
     }
 }
 
-/// Returns two booleans: the first is true if all of a primitive lies on the positive side, the second if any part of
-/// it does.
+/// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
+/// second is true if any part of it does.
 ///
-/// With a tolerance, a primitive is on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either.
+/// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
+/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

@@ -1,45 +1,48 @@
-//! The six methods of clipping to a slice on a swept display, with their near plane, far plane and bins.
+//! The six methods of clipping the scene to a slice on a swept display, with their near plane, far plane and bin
+//! tolerance.
 
 use crate::error::{SpatialError, require};
 use crate::slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};
 use serde::{Deserialize, Serialize};
 
-/// A method of clipping the scene to the volume of a slice that is swept around an axis.
+/// A method of clipping the scene to the volume of one slice. The slices are arranged around an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Only the near and far planes of an orthographic projection: a prism with the slice's thickness at the rim.
+    /// Only the near and far planes of an orthographic projection clip. The volume is a prism as thick as the exact
+    /// slice at the rim.
     Prism,
-    /// Two user clip planes per pass, with one pass for each lobe of the double wedge.
+    /// Two user clip planes clip in each pass. Each lobe of the double wedge has its own pass.
     UserPlanes,
-    /// The product of two interpolated clip planes in the fragment program: the exact volume in one pass.
+    /// The fragment program tests the product of the interpolated distances from both planes. This gives the exact
+    /// volume in one pass.
     ShaderPlanes,
-    /// Planes from a half thickness of q pixels at the axis to the exact thickness at the rim, with one pass for each
-    /// side.
+    /// Planes whose distance from the slice grows from q pixels at the axis to the exact half thickness at the rim.
+    /// Each side of the axis has its own pass.
     Tapered(
-        /// Half thickness q at the axis, pixels.
+        /// Half thickness q of the volume at the axis, in pixels.
         f64,
     ),
-    /// Both boundary planes, moved outwards by q pixels.
+    /// Both boundary planes are moved outwards by q pixels.
     Parallel(
-        /// Offset q of both planes, pixels.
+        /// Offset q of both planes, in pixels.
         f64,
     ),
-    /// The product of both boundary planes plus a bias b.
+    /// The product of the distances from both boundary planes, plus a bias b, is tested.
     Hyperbolic(
-        /// Bias b of the product, square pixels.
+        /// Bias b of the product, in square pixels.
         f64,
     ),
 }
 
-/// Offset of the parallel and the tapered clip, pixels. Assumed, 0 to 2: with half a pixel, no slab is thinner than one
-/// pixel.
+/// Offset of the parallel and the tapered clip, in pixels. It is assumed, 0 to 2. With half a pixel, no slab is thinner
+/// than one pixel.
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
-/// Bias of the hyperbolic clip, square pixels. Assumed, 0 to 4: the square of [`DEFAULT_OFFSET_PX`].
+/// Bias of the hyperbolic clip, in square pixels. It is assumed, 0 to 4, as the square of [`DEFAULT_OFFSET_PX`].
 pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 
-/// Half the wedge of one slice: sine, cosine and tangent of d/2, where d is the angle between slices.
+/// Half of the wedge that one slice represents: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
     /// Sine of half the angle between slices, S = sin(d/2).
@@ -53,7 +56,7 @@ pub struct HalfWedge {
 }
 
 impl HalfWedge {
-    /// Returns the half wedge of a display with `slices` per turn and this radius in pixels.
+    /// Returns half of the wedge of one slice, for a display with `slices` per turn and this radius in pixels.
     #[must_use]
     pub fn new(slices: u32, radius: f64) -> Self {
         let (sin, cos) = crate::angle::sin_cos_of_turn(1, 2 * slices);
@@ -85,7 +88,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns the distance of the near and far planes from the slice, pixels (h_max of the specification).
+    /// Returns the distance of the near and far planes from the slice, in pixels (h_max of the specification).
     #[must_use]
     pub fn reach(self, wedge: HalfWedge) -> f64 {
         let face = wedge.radius * wedge.sin;
@@ -96,8 +99,8 @@ impl SliceClip {
         }
     }
 
-    /// Returns the greatest distance from the exact wedge at which a slice still shows a point, pixels. Bins must allow
-    /// for this distance.
+    /// Returns the greatest distance in pixels from the exact wedge at which a slice still shows a point. Bins must
+    /// allow for this distance.
     #[must_use]
     pub fn tolerance(self, wedge: HalfWedge) -> f64 {
         match self {
@@ -108,7 +111,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns the half thickness of the slice at a distance u from the axis, pixels.
+    /// Returns half the thickness of the slice's volume at a distance u from the axis, in pixels.
     #[must_use]
     pub fn half_thickness(self, wedge: HalfWedge, u: f64) -> f64 {
         let exact = u.abs() * wedge.tan;
@@ -121,7 +124,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns the volume of a slice with these boundary planes.
+    /// Returns the slice volume that this method gives for a slice with these boundary planes.
     #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {

@@ -1,18 +1,18 @@
-//! The recording of a context: vertices in world coordinates, their primitives, and the rule for combining fragments. A
-//! recording is independent of the display.
+//! The recorded draw calls of a context: vertices in world coordinates, their primitives, and the rule for several
+//! fragments on one pixel. A recording does not depend on the display.
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for several fragments on one pixel.
+/// The rule for the colour of a pixel with several fragments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Combine {
-    /// The last fragment replaces earlier ones, as in GL without a depth test.
+    /// The last fragment replaces earlier fragments, as in GL without a depth test.
     #[default]
     Last,
-    /// The maximum of each channel, in any order of drawing.
+    /// Each channel is the maximum over all fragments. The order of drawing does not matter.
     Max,
-    /// The sum of each channel, limited to 255, in any order of drawing.
+    /// Each channel is the sum over all fragments, limited to 255. The order of drawing does not matter.
     Add,
 }
 
@@ -26,7 +26,7 @@ pub(crate) enum Shape {
     Point(f64),
 }
 
-/// A triangle, line or point of a recording. A line uses two of the vertices, a point one.
+/// A triangle, line or point of a recording. A line uses two vertices, and a point uses one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Primitive {
     pub(crate) shape: Shape,
@@ -44,15 +44,17 @@ impl Primitive {
         &self.vertices[..count]
     }
 
-    /// Returns the distance by which the primitive extends beyond its vertices around the axis of a display, pixels.
+    /// Returns the distance in pixels by which the primitive extends beyond its vertices: half the size of a point, and
+    /// otherwise 0.
     pub(crate) fn extra(&self) -> f64 {
         if let Shape::Point(size) = self.shape { size / 2.0 } else { 0.0 }
     }
 }
 
-/// An immutable recording, replayed for every slice and every pass of every display.
+/// An immutable recording of draw calls. It is replayed for every slice and every pass, on any display.
 ///
-/// Vertices are lit and in world coordinates. Each vertex was transformed once, during recording.
+/// Vertices are in world coordinates, and their colours include the lighting. Each vertex was transformed once, during
+/// recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommandBuffer {
     pub(crate) positions: Vec<[f64; 3]>,
@@ -66,7 +68,7 @@ pub struct CommandBuffer {
 pub struct CommandTriangle {
     /// Corners in world coordinates, pixels.
     pub corners: [[f64; 3]; 3],
-    /// Lit red, green and blue of each corner, 0 to 255.
+    /// Red, green and blue of each corner after lighting, 0 to 255.
     pub colours: [[f64; 3]; 3],
 }
 
@@ -83,19 +85,19 @@ impl CommandBuffer {
         self.primitives.len()
     }
 
-    /// Returns red, green and blue of pixels on which nothing is drawn.
+    /// Returns red, green and blue of pixels without a fragment.
     #[must_use]
     pub const fn background(&self) -> [u8; 3] {
         self.background
     }
 
-    /// Returns the world corners of every triangle, in the order of drawing.
+    /// Returns the corners of every triangle in world coordinates, in the order of drawing.
     pub fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         let triangles = self.primitives.iter().filter(|primitive| primitive.shape == Shape::Triangle);
         triangles.map(|primitive| primitive.vertices.map(|i| self.positions[i as usize]))
     }
 
-    /// Returns the triangle with this index among the primitives. Returns `None` for a line, a point or an index beyond
+    /// Returns the triangle with this index among all primitives. Returns `None` for a line, a point or an index beyond
     /// the last primitive.
     #[must_use]
     pub fn triangle(&self, primitive: u32) -> Option<CommandTriangle> {

@@ -1,4 +1,4 @@
-//! The programming interface: state as in GL, vertices, and drawing. The interface is independent of any display.
+//! The programming interface: drawing state as in GL, vertices, and drawing. It does not depend on any display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use crate::error::{SpatialError, require};
@@ -6,12 +6,12 @@ use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// A vertex in the coordinates of its object.
+/// A vertex, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
     /// Position, in pixels if the model-view matrix is the identity.
     pub position: DVec3,
-    /// Normal of the surface, of any length. Only lighting uses it.
+    /// Normal of the surface, of any length. It matters only with lighting.
     pub normal: DVec3,
     pub colour: [u8; 3],
 }
@@ -76,30 +76,30 @@ pub enum Topology {
     TriangleFan,
 }
 
-/// A directional light for both sides of a surface, because a volume is seen from all sides.
+/// A directional light that shines on both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Direction towards the light in world coordinates, of any length except zero.
     pub direction: DVec3,
-    /// Fraction of the colour that is visible without light.
+    /// Fraction of a surface's colour that is visible without light.
     pub ambient: f64,
-    /// Fraction of the colour that perpendicular light adds.
+    /// Fraction of a surface's colour that perpendicular light adds.
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording. [`Context::present`] returns the recording and starts a new one. The
-/// state stays.
+/// The drawing state and the current recording of draw calls. [`Context::present`] returns the recording and starts a
+/// new one. The drawing state does not change.
 #[derive(Clone, Debug)]
 pub struct Context {
-    /// Matrix from object to world coordinates. With a light, its scale must be uniform.
+    /// Matrix from object to world coordinates. It must scale uniformly if there is a light.
     pub model_view: DMat4,
-    /// Side of the square that represents a point, pixels of the slice.
+    /// Side of the square that represents a point, in pixels of the slice.
     pub point_size: f64,
-    /// Width of lines, pixels of the image.
+    /// Width of lines, in pixels of the image.
     pub line_width: f64,
     /// Light of the scene. `None` leaves colours unchanged.
     pub light: Option<Light>,
-    /// Rule for several fragments on one pixel.
+    /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
     recording: CommandBuffer,
 }
@@ -118,7 +118,7 @@ impl Default for Context {
 }
 
 impl Context {
-    /// Discards the recording and fills every slice with a colour.
+    /// Discards the recorded draw calls, and fills every slice with a colour.
     pub fn clear(&mut self, colour: [u8; 3]) {
         self.recording = CommandBuffer { background: colour, ..CommandBuffer::default() };
     }
@@ -161,7 +161,7 @@ impl Context {
         Ok(())
     }
 
-    /// Ends the recording and returns it.
+    /// Ends the current recording of draw calls and returns it.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)

@@ -55,7 +55,7 @@ impl SpatialError {
     }
 }
 
-/// Returns an error unless `holds` is true.
+/// Returns an error with these texts if `holds` is false.
 pub(crate) fn require(
     holds: bool,
     what: &'static str,

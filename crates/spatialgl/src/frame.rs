@@ -14,7 +14,7 @@ pub struct BitPlanes {
 }
 
 impl BitPlanes {
-    /// Creates dark slices of this size.
+    /// Creates slices of this size in which no pixel is lit.
     #[must_use]
     pub fn dark(size: Size, slices: u32) -> Self {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
@@ -65,7 +65,7 @@ impl BitPlanes {
         self.words.iter().map(|word| u64::from((word | word >> 8 | word >> 16).to_le_bytes()[0].count_ones())).sum()
     }
 
-    /// Returns a hash of all bits, which does not depend on threads, tiles or the order of drawing.
+    /// Returns a hash of all bits. It does not depend on threads, tiles or the order of drawing.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let lit = (0u64..).zip(&self.words).filter(|(_, word)| **word != 0);

@@ -5,13 +5,13 @@ use crate::error::{SpatialError, require};
 
 /// Thresholds of an ordered dither, the same for all channels and slices.
 ///
-/// Assumed: the matrix is 8 x 8 (2, 4 and 16 are allowed), and the threshold of a matrix element M is floor((2 M + 1)
-/// 255 / 2 n^2). A bit is set if the channel exceeds the threshold. The value 0 lights no pixels, 255 lights all, and c
-/// lights round(n^2 c / 255) of n^2 pixels.
+/// It is assumed that the matrix is 8 x 8 (2, 4 and 16 are allowed). The threshold of a matrix element M is floor((2 M
+/// + 1) 255 / 2 n^2). A bit is set if the channel exceeds the threshold. The value 0 lights no pixels, and 255 lights
+/// all. The value c lights round(n^2 c / 255) of n^2 pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halftone {
     size: u32,
-    /// Rows of thresholds, each repeated to a multiple of eight pixels.
+    /// Rows of thresholds. Each row is repeated until its length is a multiple of eight pixels.
     rows: Vec<Vec<u8>>,
 }
 
@@ -36,14 +36,14 @@ impl Halftone {
         self.size
     }
 
-    /// Returns the value that a channel of pixel (x, y) must exceed to be lit.
+    /// Returns the threshold at pixel (x, y). A channel's bit is set if its value exceeds the threshold.
     #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]
     }
 
-    /// Returns the thresholds of eight pixels of a row from x on, with the leftmost in the lowest byte. x is a multiple
-    /// of 8.
+    /// Returns the thresholds of eight pixels of a row from x on. The leftmost pixel is in the lowest byte. x is a
+    /// multiple of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, x: u32, y: u32) -> u64 {
         let row = &self.rows[(y % self.size) as usize];
@@ -54,7 +54,8 @@ impl Halftone {
     }
 }
 
-/// Returns element (column i, row j) of Bayer's matrix: the bits of i xor j and of j, interleaved from the lowest.
+/// Returns the element in column i and row j of Bayer's matrix. It interleaves the bits of i xor j and of j, starting
+/// from the lowest.
 fn bayer(size: u32, i: u32, j: u32) -> u32 {
     let levels = size.trailing_zeros();
     let digit = |bit: u32| ((i ^ j) >> bit & 1) << 1 | (j >> bit & 1);
@@ -90,7 +91,7 @@ mod tests {
         assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
     }
 
-    /// Case 22 of the specification.
+    /// Checks case 22 of the specification: the number of lit pixels among 64.
     #[test]
     fn so_many_of_64_pixels_are_lit() {
         let counts = [0u8, 1, 2, 64, 127, 128, 200, 253, 254, 255]

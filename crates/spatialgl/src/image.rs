@@ -1,9 +1,10 @@
-//! The target image of one slice: eight-bit colours, the stencil, and depth if the view hides surfaces.
+//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther ones.
 
 use crate::command::Combine;
 use crate::projection::Size;
 
-/// A slice before halftoning. Colours are stored channel by channel. The stencil has one bit per pixel, eight per byte.
+/// The image of a slice before halftoning. Colours are stored channel by channel. The stencil has one bit per pixel,
+/// eight per byte.
 #[derive(Clone, Debug)]
 pub struct SliceImage {
     size: Size,
@@ -50,13 +51,13 @@ impl SliceImage {
         }
     }
 
-    /// Returns true if anything was drawn on the eight pixels from index `at` on. `at` is a multiple of 8.
+    /// Returns true if a fragment was drawn on any of the eight pixels from index `at` on. `at` is a multiple of 8.
     #[inline(always)]
     pub(crate) fn is_marked_at(&self, at: usize) -> bool {
         self.stencil[at / 8] != 0
     }
 
-    /// Returns true if anything was drawn on the pixels `from..to`. Both indices are multiples of 8.
+    /// Returns true if a fragment was drawn on any of the pixels `from..to`. Both indices are multiples of 8.
     #[inline(always)]
     pub(crate) fn is_marked_between(&self, from: usize, to: usize) -> bool {
         self.stencil[from / 8..to / 8].iter().fold(0, |any, byte| any | byte) != 0
@@ -74,7 +75,7 @@ impl SliceImage {
         }
     }
 
-    /// Returns eight values of each channel from index `at` on, with the leftmost in the lowest byte. `at` is a
+    /// Returns eight values of each channel, from index `at` on. The leftmost pixel is in the lowest byte. `at` is a
     /// multiple of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, at: usize) -> [u64; 3] {
@@ -106,8 +107,8 @@ impl SliceImage {
         y as usize * self.size[0] as usize + x as usize
     }
 
-    /// Returns true if the fragment is nearer to the near plane than earlier fragments of its pixel, and stores its
-    /// distance.
+    /// Returns true if a fragment is nearer to the near plane than all earlier fragments of its pixel. If so, stores
+    /// the fragment's distance.
     #[inline]
     pub(crate) fn is_nearest(&mut self, x: u32, y: u32, distance: f64) -> bool {
         if self.depth.is_empty() {
@@ -135,7 +136,7 @@ impl SliceImage {
         }
     }
 
-    /// Draws a fragment: marks its pixel and combines its colour.
+    /// Draws a fragment: sets the stencil bit of its pixel, and combines its colour with the pixel's colour.
     ///
     /// # Panics
     /// If the pixel lies outside the image.
@@ -149,7 +150,7 @@ impl SliceImage {
         self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
     }
 
-    /// Lights a pixel if nothing has been drawn on it. Returns true if it did.
+    /// Draws a pixel if no fragment was drawn on it before. Returns true if the pixel was drawn.
     pub(crate) fn fill_gap(&mut self, x: f64, y: f64, colour: [u8; 3]) -> bool {
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
         let is_gap = inside && !self.is_marked(x as u32, y as u32);

@@ -1,4 +1,5 @@
-//! SpatialGL: a triangle pipeline as for 2-D graphics, executed once for every slice of a volumetric display.
+//! SpatialGL: a rendering pipeline for triangles, as for flat screens, executed once for every slice of a volumetric
+//! display.
 //!
 //! ```text
 //!  Context --present()--> CommandBuffer            (vertices transformed and lit once)
@@ -15,9 +16,9 @@
 //!
 //! # Behaviour
 //!
-//! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline knows nothing else about a
-//!   display, and a recording does not depend on the display. [`SweptDisplay`] is the spinning screen of the paper.
-//!   [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
+//! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline uses no other property of a
+//!   display, and a recording of draw calls does not depend on the display. [`SweptDisplay`] is the spinning screen of
+//!   the paper. [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
 //!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of them.
 //! - Samples are at pixel centres, with the top-left rule on edges. There is no culling, and only the flat screen has a

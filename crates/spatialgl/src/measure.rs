@@ -1,4 +1,4 @@
-//! Measurements of a volume: connectedness of surfaces, brightness by radius, and the dark zone at the axis.
+//! Measurements of a volume: connectedness of surfaces, number of lit pixels by radius, and the dark zone at the axis.
 
 use crate::command::CommandBuffer;
 use crate::curve::plane_curve;
@@ -8,7 +8,7 @@ use crate::view::{SliceView, SpatialDisplay};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Counts of samples along the curves in which a mesh crosses the slices.
+/// Counts of samples along the curves in which the slices intersect a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Connected {
     /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
@@ -18,15 +18,16 @@ pub struct Connected {
 }
 
 impl Connected {
-    /// Returns the percentage of samples that are shown. Without samples the result is 100.
+    /// Returns the percentage of samples that are shown. The result is 100 if there are no samples.
     #[must_use]
     pub fn percent(&self) -> f64 {
         if self.samples == 0 { 100.0 } else { 100.0 * self.shown as f64 / self.samples as f64 }
     }
 }
 
-/// Measures how connected a swept volume shows a mesh. Returns `None` if the frame was made without its colours
-/// ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because the gaps of the dither would count.
+/// Measures how connected the surfaces of a mesh appear on a swept display. Returns `None` if the frame was made
+/// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because the gaps of the
+/// dither would count.
 #[must_use]
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;
@@ -46,7 +47,7 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
     Some(found)
 }
 
-/// Calls `each` with both ends of every triangle's intersection with the plane of a slice.
+/// Calls `each` for every triangle that crosses the plane of a slice, with both ends of the intersection.
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
     // Clusters away from the slice are skipped.
     let middle = view.volume.middle();
@@ -64,7 +65,7 @@ fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: i
 /// samples in each row are correlated over the rows of the image. The result is the mean over all pairs: 1 for a
 /// pattern that all slices share, near 0 for noise.
 ///
-/// Returns `None` without colours, as [`connected`] does, and for volumes without gaps.
+/// Returns `None` for frames without colours, as [`connected`] does, and for volumes without gaps.
 #[must_use]
 pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<f64> {
     let colours = frame.colours.as_ref()?;
@@ -82,7 +83,7 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Counts the samples of each row of a slice's image.
+/// Counts the samples in each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,
@@ -100,8 +101,8 @@ fn rows_of_slice(
     rows
 }
 
-/// Returns Pearson's correlation of the percentages in the rows with samples in both slices. Returns `None` if the
-/// percentage is constant in either slice.
+/// Returns Pearson's correlation of the percentages of shown samples in two slices, over the rows with samples in both.
+/// Returns `None` if the percentage is constant in either slice.
 fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
     let both: Vec<[f64; 2]> = one
         .iter()
@@ -117,7 +118,7 @@ fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
     (spread > 0.0).then(|| product(0, 1) / spread)
 }
 
-/// The drawn pixels of a slice, each dilated to its eight neighbours.
+/// The drawn pixels of a slice, each enlarged to include its eight neighbours.
 struct Around {
     size: [u32; 2],
     near: Vec<bool>,
@@ -140,7 +141,8 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls `each` for every sample of a curve inside the image, with its row and true if it is shown.
+    /// Calls `each` for every sample of a curve inside the image, with the row of the sample and true if the sample is
+    /// shown.
     fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
@@ -156,14 +158,15 @@ impl Around {
     }
 }
 
-/// Returns the position of a point of the slice in its image, pixels from the top left.
+/// Returns the position of a point of the slice in the slice's image, in pixels from the top left.
 fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
     let clip = view.projection * DVec3::from_array(local).extend(1.0);
     let [width, height] = size.map(f64::from);
     [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0]
 }
 
-/// Returns the lit pixels of all slices by their distance from the middle column, in rings `ring` pixels wide.
+/// Returns the number of lit pixels of all slices in each ring around the axis. Rings are `ring` pixels wide, and the
+/// distance is measured from the middle column.
 #[must_use]
 pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let [width, _] = planes.size();
@@ -176,16 +179,18 @@ pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     rings
 }
 
-/// Returns the radius in pixels within which no slice shows anything, or `None` for a dark volume.
+/// Returns the radius in pixels around the axis within which no pixel of any slice is lit. Returns `None` if no pixel
+/// is lit.
 #[must_use]
 pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
     brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)
 }
 
-/// Returns the radius in pixels of the display's dead zone, in which no slice can show any point, whatever the scene.
+/// Returns the radius in pixels of the display's dead zone around the axis. In the dead zone, no slice can show any
+/// point of any scene.
 ///
-/// A column of pixels belongs to the dead zone if no slice accepts the centre of the column at half of the volume's height, on either
-/// side of the axis. `None` if no column of any slice accepts it.
+/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. It belongs to
+/// the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
     let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();

@@ -1,4 +1,4 @@
-//! Packing of three-bit projector pixels in 32-bit words: eight per word as in the paper, or ten for comparison.
+//! Packing of projector pixels of three bits into 32-bit words: eight per word as in the paper, or ten for comparison.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ pub const DENSE_PIXELS: usize = 10;
 /// Number of pixels in one word as published (P9).
 pub const PIXELS_PER_WORD: u32 = 8;
 
-/// The bit of a byte that is the leftmost of its eight pixels.
+/// The order of the eight pixels in a byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
@@ -27,7 +27,8 @@ pub const fn packed_word(red: u8, green: u8, blue: u8) -> u32 {
     u32::from_le_bytes([red, green, blue, 0])
 }
 
-/// Returns the three bits (bit 0 red, 1 green, 2 blue) of pixel 0 (the leftmost) to 7 of a word.
+/// Returns the three bits (bit 0 red, 1 green, 2 blue) of a pixel in a word. Pixel 0 is the leftmost, and pixel 7 the
+/// rightmost.
 #[inline(always)]
 #[must_use]
 pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
@@ -35,7 +36,7 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// Returns a word with the bits of each byte in this order.
+/// Returns a word in which the bits of each byte have this order.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {
@@ -44,7 +45,8 @@ pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     }
 }
 
-/// Packs ten three-bit pixels per word, the first in bits 0 to 2. The last word may hold fewer. For comparison only.
+/// Packs ten three-bit pixels into each word, with the first in bits 0 to 2. The last word may hold fewer. This packing
+/// is for comparison only.
 #[must_use]
 pub fn pack_dense(pixels: &[u8]) -> Vec<u32> {
     let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, pixel| word << 3 | u32::from(pixel & 7));

@@ -1,4 +1,5 @@
-//! Projections from the coordinates of a slice to its image. All of them leave points in the plane s = 0 in place.
+//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself (s =
+//! 0).
 
 use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec4};
@@ -8,43 +9,43 @@ use serde::{Deserialize, Serialize};
 /// The size of an image: width, then height, in pixels.
 pub type Size = [u32; 2];
 
-/// The projection of points off a slice onto its image.
+/// The projection that maps points near a slice to the slice's image.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Projection {
-    /// Projection along s. Planes perpendicular to the screen are lost.
+    /// Projection along s. Surfaces perpendicular to the slice become lines.
     Orthographic,
-    /// Projection from an eye at (u, v, distance), in pixels of the slice's coordinates, with a shear. All slices have
+    /// Projection with a shear from an eye at (u, v, distance), in pixels of the slice's coordinates. All slices have
     /// the same eye.
     Perspective {
-        /// Position of the eye relative to the axis of the image, pixels.
+        /// Horizontal and vertical position of the eye relative to the axis of the image, in pixels.
         eye: [f64; 2],
-        /// Distance of the eye along +s, pixels.
+        /// Distance of the eye from the slice along +s, in pixels.
         distance: f64,
-        /// Horizontal and vertical shear, in pixels per pixel of s.
+        /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],
     },
     /// Projection with a random eye and a random shear for each slice.
     Jittered(Jitter),
 }
 
-/// The random eye and shear of each slice, as a pure function of the seed and the slice.
+/// The random eye and shear of each slice. They depend only on the seed and the index of the slice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
-    /// Seed of the random sequence, which is the same in all passes and volumes.
+    /// Seed of the random sequence. It is the same in all passes and volumes.
     pub seed: u64,
-    /// Distance of the eye in radii of the display. Assumed 4, 2 to 16.
+    /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
     /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
-    /// Greatest shift by the shear at the face of the slab, pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift of a point by the shear, at the face of the slice's slab, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
-    /// Returns the assumed jitter with a seed. The eye is four display radii away, within a disc of half a radius. The
-    /// shear shifts points at the slab's face by at most half a pixel.
+    /// Returns the assumed jitter with this seed. The eye is four display radii away, within a disc of half a radius.
+    /// The shear shifts points at the slab's face by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }
@@ -54,14 +55,14 @@ impl Jitter {
 /// The eye and the shear of one slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
-    /// Eye in coordinates u, v and s, pixels, or `None` for an eye at infinity (a projection along s).
+    /// Position of the eye in coordinates u, v and s, in pixels. `None` for an eye at infinity (a projection along s).
     pub eye: Option<[f64; 3]>,
-    /// Horizontal and vertical shear, in pixels per pixel of s.
+    /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
     pub shear: [f64; 2],
 }
 
 impl Projection {
-    /// Returns the eye and shear of a slice. `radius` is the display's radius, and `reach` the distance from the slice
+    /// Returns the eye and shear of a slice. `radius` is the display's radius. `reach` is the distance from the slice
     /// to the near and far planes.
     #[must_use]
     pub fn eye(&self, slice: u32, radius: f64, reach: f64) -> SliceEye {
@@ -102,14 +103,14 @@ impl Jitter {
     }
 }
 
-/// Returns a point uniform in a disc around (0, 0).
+/// Returns a random point, uniformly distributed in a disc around (0, 0).
 fn in_disc(seed: u64, slice: u32, draw: u64, radius: f64) -> [f64; 2] {
     let r = radius * libm::sqrt(unit(seed, slice, draw));
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * unit(seed, slice, draw + 1));
     [r * cos, r * sin]
 }
 
-/// Returns a number in [0, 1) with 53 random bits from the mixing function of splitmix64.
+/// Returns a random number in [0, 1) with 53 bits from the mixing function of splitmix64.
 fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
     let counter = (u64::from(slice) << 2) | draw;
     let hash = mix(mix(seed).wrapping_add(counter));
@@ -139,11 +140,11 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// Returns the rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in pixels,
-    /// depth, w.
+    /// Returns the matrix rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in
+    /// pixels, depth, w.
     ///
-    /// The map equals [`Self::clip_matrix`] followed by the viewport, but without the rounding of a division and a
-    /// multiplication by R.
+    /// The result equals [`Self::clip_matrix`] followed by the viewport. It avoids the rounding of a division by R and
+    /// a multiplication by R.
     #[must_use]
     pub fn window_rows(&self, size: Size, reach: f64) -> [[f64; 4]; 4] {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
@@ -174,7 +175,7 @@ pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
     DMat4::from_cols(x, y, z, w).transpose()
 }
 
-/// Returns the rows to homogeneous window coordinates for any projection to clip coordinates.
+/// Returns the matrix rows to homogeneous window coordinates, for any projection matrix to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
     let w = rows.w_axis;

@@ -1,14 +1,14 @@
-//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. Hardware with a tree for
-//! quadratics can evaluate this form, for example the renderers of Pixel-Planes 5. **Beyond the paper.**
+//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. Hardware that evaluates
+//! quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the paper.**
 
 use crate::clip::HalfWedge;
 
 /// The quadratic Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one. The slice contains the samples at which Q is not
 /// negative.
 ///
-/// With A B = u^2 S^2 - s^2 C^2 and the triangle's plane s = a u + c v + d, Q is A B + b. Coordinates are pixels of the
-/// slice, and values are square pixels. The projection is orthographic. A shear changes (u, v) affinely, and an eye
-/// divides by w^2. Both give quadratics again.
+/// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. Coordinates are pixels of the
+/// slice, and values are square pixels. The projection is orthographic. A shear maps (u, v) affinely, and a perspective
+/// eye divides by w^2. Both also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.
@@ -26,7 +26,8 @@ pub struct ClipQuadratic {
 }
 
 impl ClipQuadratic {
-    /// Returns the quadratic of the plane s = a u + c v + offset with `slope` = (a, c), for a bias of b square pixels.
+    /// Returns the quadratic for the plane s = a u + c v + offset and a bias of `bias` square pixels. `slope` is (a,
+    /// c).
     #[must_use]
     pub fn of_plane(slope: [f64; 2], offset: f64, wedge: HalfWedge, bias: f64) -> Self {
         let [a, c] = slope;
@@ -42,8 +43,8 @@ impl ClipQuadratic {
         }
     }
 
-    /// Returns the quadratic of the plane through three corners (u, v, s), or `None` if the plane is perpendicular to
-    /// the slice.
+    /// Returns the quadratic for the plane through three corners (u, v, s). Returns `None` if the plane is
+    /// perpendicular to the slice.
     #[must_use]
     pub fn of_corners(corners: [[f64; 3]; 3], wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [first, second, third] = corners;
@@ -76,7 +77,7 @@ mod tests {
 
     const WEDGE: fn() -> HalfWedge = || HalfWedge::new(396, 384.0);
 
-    /// Case 27 of the specification, to its last digit.
+    /// Checks case 27 of the specification, to its last digit.
     #[test]
     fn case_27_the_quadratic_of_a_plane() {
         let q = ClipQuadratic::of_plane([0.5, -0.25], -20.0, WEDGE(), 0.25);
@@ -89,8 +90,8 @@ mod tests {
         }
     }
 
-    /// With the 16 fraction bits of the renderers' format, S^2 would be only 4 units. With 26 bits it has 12
-    /// significant bits, and Q fits into 48 bits.
+    /// Checks the number of fraction bits. With the 16 fraction bits of the renderers' format, S^2 would be only 4
+    /// units. With 26 bits it has 12 significant bits, and Q fits into 48 bits.
     #[test]
     fn its_scale_fits_the_renderers_words() {
         let square = WEDGE().sin * WEDGE().sin;

@@ -1,4 +1,5 @@
-//! Rendering of a volume from a recording: bins, batches of slices, tile queries, halftoning and packing.
+//! Rendering of a volume from recorded graphics commands: bins, batches of slices, tile queries, halftoning and
+//! packing.
 
 use crate::bin::{BinTolerance, Binning};
 use crate::command::CommandBuffer;
@@ -18,39 +19,40 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// The slices of a turn that are drawn.
+/// Choice of the slices of a turn that are drawn. The others are mirrored copies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
     /// Each slice of the turn is drawn.
     #[default]
     Each,
-    /// The first half is drawn. The second half shows the first half mirrored, including its jitter. **Beyond the
-    /// paper.**
+    /// The slices of the first half turn are drawn. Those of the second half are their mirror images, including the
+    /// jitter. **Beyond the paper.**
     Mirror,
 }
 
-/// The settings for rendering a volume from a recording.
+/// The settings for rendering a volume from recorded graphics commands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {
-    /// Method of sorting primitives before slices are drawn.
+    /// Method of sorting primitives into bins before slices are drawn.
     pub binning: Binning,
-    /// Distance from a plane within which a vertex counts for both sides.
+    /// Distance from a plane within which a vertex counts as lying on both sides.
     pub bin_tolerance: BinTolerance,
     /// Size of tiles, and number of slices per occlusion query.
     pub tiling: Tiling,
     /// Conversion from eight bits to one bit per channel.
     pub halftone: Halftone,
-    /// Pixels of a slice that a primitive covers.
+    /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Slices of a turn that are drawn.
+    /// Choice of the slices of a turn that are drawn.
     pub strobes: Strobes,
-    /// True if the colours before halftoning are kept.
+    /// True if the frame keeps the colours before halftoning.
     pub keeps_colours: bool,
 }
 
 impl VolumeConfig {
-    /// Returns the paper's algorithms, with bins that lose no fragments and Bayer's matrix of 8 x 8.
+    /// Returns the paper's algorithms. The bins have a tolerance, so no fragments are lost, and Bayer's matrix has 8 x
+    /// 8 elements.
     ///
     /// # Panics
     /// Never, because the matrix has a valid size.
@@ -67,15 +69,15 @@ impl VolumeConfig {
         }
     }
 
-    /// Returns settings that draw the same picture by brute force: every slice draws everything, and every pixel is
-    /// packed and sent.
+    /// Returns settings that draw the same picture without optimizations: every slice draws everything, and every pixel
+    /// is packed and sent.
     #[must_use]
     pub fn plain() -> Self {
         Self { binning: Binning::Off, tiling: Tiling::OFF, ..Self::paper() }
     }
 }
 
-/// Draws a volume. The result depends neither on the workers nor on bins and tiles.
+/// Draws a volume. The workers, bins and tiles do not change the resulting bits.
 ///
 /// # Errors
 ///
@@ -109,7 +111,7 @@ pub fn render_volume(
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }
 
-/// The primitives that each group of slices draws.
+/// For each group of slices, the primitives that its slices draw.
 struct Bins {
     lists: BTreeMap<u64, Bin>,
     memberships: u64,
@@ -138,7 +140,7 @@ impl Bins {
     }
 }
 
-/// The words of a slice, and of its mirrored slice if there is one. Both are dark at the start.
+/// The words of a slice, and of its mirror image if there is one. All pixels are dark at first.
 struct SliceWords<'a> {
     own: &'a mut [u32],
     turned: Option<&'a mut [u32]>,
@@ -162,7 +164,7 @@ struct Volume<'a> {
     renderer: &'a dyn SliceRenderer,
     bins: &'a Bins,
     size: Size,
-    /// Clean target images that are not in use.
+    /// Dark target images that no task uses at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
@@ -225,8 +227,8 @@ impl<'a> Volume<'a> {
         })
     }
 
-    /// Returns the occupied tiles of a batch. Without tiling, or with a background that is not dark, these are all
-    /// tiles.
+    /// Returns the indices of the occupied tiles of a batch. All tiles count as occupied without tiling, or if the
+    /// background is not dark.
     fn occupied(&self, grid: &TileGrid, images: &[SliceImage]) -> Vec<u32> {
         let mut marked = vec![!self.is_sparse(); grid.tiles() as usize];
         for image in images.iter().filter(|_| self.is_sparse()) {
@@ -240,7 +242,8 @@ impl<'a> Volume<'a> {
         self.config.tiling.tile.is_some() && self.commands.background == [0; 3]
     }
 
-    /// Halftones and packs a rectangle, and makes its pixels clean again. The left and right sides are multiples of 8.
+    /// Halftones and packs a rectangle of pixels, and then makes these pixels dark again. The left and right sides of
+    /// the rectangle are multiples of 8.
     fn pack_tile(&self, image: &mut SliceImage, rectangle: [u32; 4], words: &mut SliceWords<'_>) {
         let [left, top, right, bottom] = rectangle;
         let width = image.size()[0];
@@ -308,7 +311,7 @@ fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
 }
 
-/// Returns the drawn pixels with their colours.
+/// Returns the drawn pixels of an image with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let width = image.size()[0];
     let mut samples = Vec::new();

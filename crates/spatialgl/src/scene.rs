@@ -1,4 +1,5 @@
-//! Recordings of scenes from `pxpl5-scene`: centred on the axis, scaled to a given radius, with tessellated spheres.
+//! Recordings of scenes from `pxpl5-scene`. A scene is centred on the axis and scaled to a given radius, and its
+//! spheres become triangles.
 
 use crate::command::CommandBuffer;
 use crate::context::{Context, Light, Topology, Vertex, VertexBuffer};
@@ -6,14 +7,15 @@ use crate::error::SpatialError;
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Scene, Sphere};
 
-/// Number of facets of a tessellated sphere from pole to pole. Around the sphere there are twice as many.
+/// Number of facets of a sphere from pole to pole. There are twice as many facets around the sphere.
 const SPHERE_ROWS: u32 = 12;
 
 /// Distance of the farthest point of a scene from the axis, as a fraction of the display's radius.
 pub const SCENE_REACH: f64 = 0.9;
 
-/// Records a scene for a display of this radius. The middle of the scene's box is at the origin, and its farthest point
-/// at [`SCENE_REACH`] times the radius. The scene's own light is used if `lit`. The background stays dark.
+/// Records the draw calls of a scene for a display of this radius. The middle of the scene's box is at the origin, and
+/// its farthest point at [`SCENE_REACH`] times the radius. If `lit` is true, the scene's own light shades it. The
+/// background stays dark.
 ///
 /// # Errors
 ///

@@ -1,25 +1,25 @@
-//! Slice volumes: the points of the world that a slice represents.
+//! Slice volumes: for each slice, the points of the world that the slice represents.
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
+/// The rule for a point exactly on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
 ///
-/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the lobe on the
-/// +u side.
+/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe, which
+/// lies on the +u side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to the slice that begins with it, so the space off the axis is partitioned. This
-    /// rule is our own.
+    /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
+    /// one slice. This rule is our own.
     #[default]
     HalfOpen,
-    /// As printed in the paper: the product is positive. No slice contains its boundary planes or the axis.
+    /// The rule as printed in the paper: the product of the distances is positive. No slice contains its boundary
+    /// planes or the axis.
     ProductPositive,
-    /// As printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes of the +
-    /// lobe, no plane of the
-    /// - lobe, and the axis.
+    /// The rule as printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes
+    /// of the positive lobe, no plane of the negative lobe, and the axis.
     SameSign,
-    /// Both planes belong to both lobes, as with user clip planes: the product is not negative.
+    /// Both planes belong to both lobes, as with user clip planes: the product of the distances is not negative.
     Closed,
 }
 
@@ -43,45 +43,46 @@ impl TieRule {
     }
 }
 
-/// The two boundary planes of a wedge. Both contain the axis y, so the coefficients of x and z define a plane.
+/// The two boundary planes of a wedge. Both contain the axis y, so their coefficients of x and z define them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A, which is positive on the side of the + lobe.
+    /// Coefficients of x and z of plane A. The plane's positive side contains the + lobe.
     pub a: [f64; 2],
-    /// Coefficients of x and z of plane B, which is positive on the side of the + lobe.
+    /// Coefficients of x and z of plane B. The plane's positive side contains the + lobe.
     pub b: [f64; 2],
     /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,
 }
 
-/// The test of a wedge with the distances from its two boundary planes.
+/// The test whether a point is in a wedge, given its distances from the two boundary planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WedgeTest {
-    /// Two user clip planes for each lobe, with one pass per lobe. Fragments outside are not generated.
+    /// Two user clip planes for each lobe, with one drawing pass per lobe. Fragments outside the planes are not
+    /// generated.
     UserPlanes(TieRule),
-    /// Both planes are interpolated, and one test compares their signs.
+    /// Both distances are interpolated, and one test compares their signs.
     Shader(TieRule),
-    /// Both planes are moved outwards by a number of pixels before the product of the distances is taken.
+    /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
-    /// A number of square pixels is added to the product of the distances.
+    /// This number of square pixels is added to the product of the distances.
     Hyperbolic(f64),
 }
 
-/// The part of space that a slice represents between its near and far planes, as a test of surface points.
+/// The part of space that a slice represents, expressed as a test of surface points between the near and far planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SliceVolume {
-    /// Everything between the near and far planes.
+    /// All points between the near and far planes.
     Frustum,
-    /// A slab low <= s < high parallel to the slice, pixels.
+    /// A slab low <= s < high parallel to the slice, in pixels.
     Slab {
         /// Lower limit of the slab's s, inclusive.
         low: f64,
         /// Upper limit of the slab's s, exclusive.
         high: f64,
     },
-    /// A double wedge around the axis y.
+    /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
-    /// The volume |s| <= offset + slope |u|, with one pass for each side of the axis, by clip planes.
+    /// The volume |s| <= offset + slope |u|, bounded by clip planes. Each side of the axis has its own drawing pass.
     Taper {
         /// Half thickness of the volume at the axis, pixels.
         offset: f64,
@@ -91,7 +92,7 @@ pub enum SliceVolume {
 }
 
 impl SliceVolume {
-    /// Returns the number of times that the commands are replayed for a slice.
+    /// Returns the number of times that the recorded commands are replayed for a slice.
     #[must_use]
     pub const fn passes(&self) -> u32 {
         match self {
@@ -100,13 +101,13 @@ impl SliceVolume {
         }
     }
 
-    /// Returns true if clip planes reject everything outside before fragments are generated.
+    /// Returns true if clip planes reject all points outside the volume before fragments are generated.
     #[must_use]
     pub const fn clips_before_fragments(&self) -> bool {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// Returns the s of the slice's own plane: 0, or the middle of a slab.
+    /// Returns the s of the plane in which the slice is shown: 0, or the middle of a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,
@@ -114,7 +115,7 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the two values of a vertex for the test. Both are linear in space and can be interpolated.
+    /// Returns the two values of a vertex that the test compares. Both are linear in space and can be interpolated.
     #[inline(always)]
     #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
@@ -126,7 +127,7 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the test that samples must pass in a pass over the commands.
+    /// Returns the test that samples must pass in one replay of the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -142,7 +143,7 @@ impl SliceVolume {
         }
     }
 
-    /// Returns true if a point belongs to the slice in any pass.
+    /// Returns true if a point belongs to the slice's volume in any pass.
     #[must_use]
     pub fn contains(&self, world: [f64; 3], u: f64, s: f64) -> bool {
         let [p, q] = self.attributes(world, u, s);
@@ -155,8 +156,8 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
     world[0] * plane[0] + world[2] * plane[1]
 }
 
-/// The test of one pass at one sample. The inputs of the test are the interpolated attributes p and q and w, all with
-/// one positive factor.
+/// The test of one sample in one pass. Its inputs are w and the interpolated attributes p and q, all multiplied by one
+/// positive factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,
@@ -185,7 +186,7 @@ impl SampleTest {
         }
     }
 
-    /// Returns the fraction bits to which the planes are rounded.
+    /// Returns the number of fraction bits to which the planes are rounded, or `None` without rounding.
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
             Self::All | Self::Slab | Self::Taper { .. } => None,
@@ -194,7 +195,7 @@ impl SampleTest {
         }
     }
 
-    /// Returns the same test for planes that are already rounded.
+    /// Returns the same test for values that are already rounded.
     pub(crate) const fn without_rounding(self) -> Self {
         match self {
             Self::Plus(ties, _) => Self::Plus(ties, None),

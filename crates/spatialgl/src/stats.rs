@@ -1,4 +1,4 @@
-//! Exact counts of drawing a volume.
+//! Exact counts of the work for one volume.
 
 use crate::raster::SliceStats;
 use serde::Serialize;
@@ -11,31 +11,32 @@ pub struct VolumeStats {
     pub primitives: u64,
     /// Number of primitives with a corner outside the display's volume.
     pub outside_volume: u64,
-    /// Number of slices drawn, which is less than the number shown if slices are mirrored.
+    /// Number of slices drawn. It is less than the number of slices shown if slices are mirrored.
     pub slices_rendered: u64,
-    /// Number of times that the commands are replayed for a slice.
+    /// Number of times that the recorded commands are replayed for a slice.
     pub passes: u64,
-    /// Number of samples per pixel.
+    /// Number of samples per pixel of a slice.
     pub samples: u64,
-    /// Number of primitives issued, over all slices and passes.
+    /// Number of primitives drawn, summed over all slices and passes.
     pub draws: u64,
-    /// Number of primitives that would be issued without bins.
+    /// Number of primitives that would be drawn without bins.
     pub draws_unbinned: u64,
     /// Number of primitives in all bins. A primitive in several bins counts in each of them.
     pub bin_memberships: u64,
     /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,
-    /// Number of fragments that lie in their slice's volume.
+    /// Number of fragments that lie in the volume of their slice.
     pub fragments_accepted: u64,
-    /// Number of pixels added to connect intersections, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with slices, which is beyond the paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
-    /// Number of occupied tiles, summed over batches. An occupied tile is packed and sent for every slice of its batch.
+    /// Number of occupied tiles, summed over all batches of slices. An occupied tile is packed and sent for every slice
+    /// of its batch.
     pub tiles_occupied: u64,
-    /// Number of occlusion queries: the tiles of all batches.
+    /// Number of occlusion queries: one for each tile of each batch of slices.
     pub queries: u64,
-    /// Number of stencil clears: one for each batch.
+    /// Number of stencil clears: one for each batch of slices.
     pub stencil_clears: u64,
     /// Number of halftoned and packed pixels.
     pub pixels_packed: u64,
@@ -50,7 +51,7 @@ pub struct VolumeStats {
 }
 
 impl VolumeStats {
-    /// Returns the percentage of queried tiles that were occupied. Without tiles the result is 100.
+    /// Returns the percentage of queried tiles that were occupied. The result is 100 without tiles.
     #[must_use]
     pub fn tile_occupancy_percent(&self) -> f64 {
         if self.queries == 0 { 100.0 } else { 100.0 * self.tiles_occupied as f64 / self.queries as f64 }

@@ -1,28 +1,28 @@
-//! Tiles, and the queries that find the occupied ones.
+//! Tiles of slices, and the queries that find the occupied tiles.
 
 use crate::error::{SpatialError, require};
 use crate::image::SliceImage;
 use crate::projection::Size;
 use serde::{Deserialize, Serialize};
 
-/// The division of target images into tiles, and the number of slices per query.
+/// The division of slice images into tiles, and the number of slices per query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tiling {
-    /// Side of a tile in pixels, a multiple of 8. With `None`, everything is packed and sent.
+    /// Side of a tile in pixels, a multiple of 8. With `None` there are no tiles, and every pixel is packed and sent.
     pub tile: Option<u32>,
-    /// Number of slices whose stencils are cleared and queried together.
+    /// Number of slices that share a stencil clear and the queries of tiles.
     pub batch: u32,
 }
 
 impl Tiling {
-    /// Tiles of 32 x 32 pixels (published, P16), queried every 4 slices (published, P18).
+    /// Tiles of 32 x 32 pixels (published, P16), with queries after every 4 slices (published, P18).
     pub const PAPER: Self = Self { tile: Some(32), batch: 4 };
 
-    /// No tiles: every pixel of every slice is packed and sent.
+    /// Setting without tiles: every pixel of every slice is packed and sent.
     pub const OFF: Self = Self { tile: None, batch: 4 };
 
-    /// Checks that tiles are whole words wide and that batches are not empty.
+    /// Checks that tiles are whole words wide and that batches contain at least one slice.
     ///
     /// # Errors
     ///
@@ -35,7 +35,7 @@ impl Tiling {
         require(self.batch >= 1, "tile.batch", "1 or more", self.batch)
     }
 
-    /// Returns the grid of tiles of a target. Without tiles, one tile covers everything.
+    /// Returns the grid of tiles of an image. Without tiles, the grid has one tile that covers the whole image.
     #[must_use]
     pub fn grid(self, size: Size) -> TileGrid {
         let tile = self.tile.unwrap_or_else(|| size[0].max(size[1]).next_multiple_of(8));
@@ -43,7 +43,7 @@ impl Tiling {
     }
 }
 
-/// The tiles of a target, row by row from the top left. Tiles at the right and lower edges may be smaller.
+/// The tiles of an image, row by row from the top left. Tiles at the right and lower edges may be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileGrid {
     size: Size,
@@ -73,7 +73,7 @@ impl TileGrid {
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Marks the tiles in which any fragment was drawn.
+    /// Sets `tiles` to true for each tile in which a fragment was drawn.
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;

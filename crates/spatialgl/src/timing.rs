@@ -1,4 +1,4 @@
-//! The time of a volume, from a model of processor, GPU and bus. All numbers of the model are in this module.
+//! The time of a volume, from a model of processor, GPU and bus. All parameters of the time model are in this module.
 
 use crate::projection::Size;
 use crate::stats::VolumeStats;
@@ -8,15 +8,15 @@ use serde::Serialize;
 parameters::parameter_table! {
     /// The preset `geforce-6800`: a GPU, a processor and a bus of 2005. The SpatialGL paper does not name its hardware.
     pub struct GpuTiming {
-        /// Fill rate of the GPU in fragments.
+        /// Number of fragments that the GPU fills per second.
         fill_mpixels: 6_400, "Mpixel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra (SPIE 5664 names the board)";
-        /// Texel read rate of the GPU.
+        /// Number of texels that the GPU reads per second.
         texel_mtexels: 6_400, "Mtexel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra";
-        /// Vertex transformation rate of the GPU.
+        /// Number of vertices that the GPU transforms per second.
         vertex_mvertices: 600, "Mvertex/s", Published, 600..=600 in 1..=MAX, "GeForce 6800 Ultra";
-        /// Transfer rate for reading back from the GPU, and also for sending to the projector.
+        /// Rate of transfers from the GPU to the host, and also from the host to the projector.
         readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP has a low rate from the GPU to the host";
-        /// Time of one occlusion query in addition to its fill.
+        /// Time of one occlusion query, not counting the pixels that it fills.
         query_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
         /// Time of the driver calls for one pass of one slice.
         call_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
@@ -24,12 +24,12 @@ parameters::parameter_table! {
         vertex_ns: 20, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
         /// Processor time to find the bins of one primitive.
         primitive_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
-        /// Processor time to issue one primitive of a bin.
+        /// Processor time to pass one primitive of a bin to the GPU.
         issue_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "indexed arrays";
     }
 }
 
-/// The time model. Times are linear in the counts:
+/// The time model. Its times are linear functions of the counts of a volume:
 ///
 /// ```text
 /// CPU  vertices t_vertex + primitives t_primitive + slices passes t_call + draws t_issue
@@ -39,17 +39,17 @@ parameters::parameter_table! {
 /// bus  bytes sent / readback, and the same to the projector
 /// ```
 ///
-/// An unpacked transfer takes 4 bytes per pixel, and no packing time.
+/// A transfer of unpacked pixels takes 4 bytes per pixel, and needs no time for packing.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeModel {
     /// Rates and times of the hardware.
     pub timing: GpuTiming,
 }
 
-/// The time of one volume by component, milliseconds.
+/// The time of one volume for each component of the hardware, in milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VolumeTime {
-    /// Processor time for vertices, bins and calls.
+    /// Processor time for vertices, sorting into bins, and driver calls.
     pub cpu_ms: f64,
     /// GPU time for vertices, fragments, clears, queries and packing.
     pub gpu_ms: f64,
@@ -60,7 +60,7 @@ pub struct VolumeTime {
 }
 
 impl VolumeTime {
-    /// Returns the time of both transfers over the bus, one after the other.
+    /// Returns the bus time: reading back from the GPU, then sending to the projector.
     #[must_use]
     pub fn bus_ms(&self) -> f64 {
         self.readback_ms + self.projector_ms
@@ -83,7 +83,7 @@ impl TimeModel {
     /// The preset `geforce-6800`, the hardware of 2005.
     pub const GEFORCE_6800: Self = Self { timing: GpuTiming::PAPERS };
 
-    /// Creates a model with this table.
+    /// Creates a time model with these rates and times of the hardware.
     ///
     /// # Errors
     ///
@@ -93,7 +93,7 @@ impl TimeModel {
         Ok(Self { timing })
     }
 
-    /// Returns the time of a volume with these counts, packed and sent by tiles.
+    /// Returns the time of a volume with these counts if occupied tiles are packed and sent.
     #[must_use]
     pub fn packed(&self, stats: &VolumeStats, size: Size, tile: u32) -> VolumeTime {
         let packing_ms = millions_ms(stats.pixels_packed * stats.samples.max(1), self.timing.texel_mtexels);
@@ -101,7 +101,7 @@ impl TimeModel {
         self.with_bus(stats, gpu_ms, stats.bytes_sent)
     }
 
-    /// Returns the time of a volume with all pixels sent as 32-bit words, without queries.
+    /// Returns the time of a volume with these counts if all pixels are sent as 32-bit words, without queries.
     #[must_use]
     pub fn unpacked(&self, stats: &VolumeStats, size: Size) -> VolumeTime {
         let unqueried = VolumeStats { queries: 0, stencil_clears: 0, ..stats.clone() };

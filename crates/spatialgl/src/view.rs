@@ -1,4 +1,4 @@
-//! The interface between a display and the pipeline: views and slice volumes, without the display's machinery.
+//! The interface between a display and the pipeline: views and slice volumes, without the machinery of the display.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};
@@ -6,11 +6,11 @@ use crate::slice_volume::SliceVolume;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// One slice: its position, the projection of the scene onto it, and its part of the scene.
+/// One slice: its position, the projection of the scene onto it, and the part of space that it represents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceView {
-    /// Matrix from the world to (u, v, s): horizontal and vertical position in the slice, and distance from the slice,
-    /// pixels.
+    /// Matrix from the world to (u, v, s), all in pixels: horizontal position in the slice, vertical position, and
+    /// distance from the slice.
     pub view: DMat4,
     /// Matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
     pub projection: DMat4,
@@ -18,12 +18,12 @@ pub struct SliceView {
     pub volume: SliceVolume,
     /// Bins that the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
     pub bins: u64,
-    /// True if the nearest surface hides others, which suits a view that is seen from one side only.
+    /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// Range of s in which anything can be drawn, with some slack, or `None` if the range is unknown.
+    /// Slightly enlarged range of s in which anything can be drawn, or `None` if the range is unknown.
     pub(crate) reach: Option<[f64; 2]>,
-    /// Number of samples along a side of a pixel, above 1 while a supersampled image is drawn.
+    /// Number of samples along a side of a pixel. It exceeds 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
 }
 
@@ -72,8 +72,8 @@ pub enum PixelFormat {
     Rgb8,
 }
 
-/// A volumetric or flat display, as the pipeline sees it. A display knows no triangles, and the pipeline knows no other
-/// property of a display.
+/// A volumetric or flat display, as the pipeline sees it. A display does not depend on triangles, and the pipeline uses
+/// no other property of a display.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];

@@ -1,9 +1,9 @@
-//! Execution of the tasks of a volume, on one thread or on threads supplied by a host.
+//! Execution of the tasks of a volume, on one thread or on threads that a host program supplies.
 
 /// A task that is independent of all other tasks.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// A runner of tasks, in any order and on any threads.
+/// An executor of tasks, which may run them in any order and on any threads.
 pub trait Workers: Sync {
     /// Executes all tasks and returns when they are done.
     fn run(&self, tasks: Vec<Task<'_>>);

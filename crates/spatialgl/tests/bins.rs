@@ -1,5 +1,5 @@
-//! Cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and fragments lost by bins without a
-//! tolerance.
+//! Tests of cases 12 and 21 of the specification: vertex codes, sectors, slices drawn, and fragments that bins without
+//! a tolerance lose.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! The same recording on three displays, connectedness (case 28), and the model of time.
+//! Tests with the same recording on three displays, of connectedness (case 28), and of the time model.
 
 mod support;
 
@@ -7,7 +7,7 @@ use pxpl5_scene::builtin;
 use spatialgl::*;
 use support::*;
 
-/// Returns the sphere of section 6: 24 x 48 facets, r = 300.
+/// Returns a recording of the sphere of section 6: 24 x 48 facets, r = 300.
 fn sphere() -> CommandBuffer {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
     let mut context = Context::default();
@@ -22,9 +22,9 @@ fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage
     connected(&display, &sphere(), &frame).expect("colours kept").percent()
 }
 
-/// Case 28, and the table of section 6 for the sphere. The specification does not define where the samples lie on a
-/// curve. Our samples, in the middle of equal steps of each facet's part, give 18.3, 18.8 and 25.4 %. The specification
-/// has 18.7, 19.3 and 26.0 %. With other random eyes, jitter gives the same percentages.
+/// Checks case 28 and the table of section 6 for the sphere. The specification does not define where the samples lie on
+/// a curve. Our samples lie in the middle of equal steps of each facet's part, and give 18.3, 18.8 and 25.4 %. The
+/// specification has 18.7, 19.3 and 26.0 %. With other random eyes, jitter gives the same percentages.
 #[test]
 fn case_28_connected_surfaces_of_a_sphere() {
     let jittered = Projection::Jittered(Jitter::new(1));
@@ -49,9 +49,9 @@ fn case_28_connected_surfaces_of_a_sphere() {
     }
 }
 
-/// The percentages of shown samples per row, correlated between neighbouring slices. A sphere with one facet per slice
-/// around it has the same gaps in every slice of an orthographic projection. With a different eye for each slice the
-/// gaps differ.
+/// Checks how the percentages of shown samples per row are correlated between neighbouring slices. A sphere with one
+/// facet per slice around it has the same gaps in every slice of an orthographic projection. If each slice has a
+/// different eye, the gaps differ.
 #[test]
 fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
@@ -68,8 +68,8 @@ fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
     assert!(along > 0.95 && jittered.abs() < 0.5, "{along} along the normal, {jittered} with jitter");
 }
 
-/// Neighbouring slabs meet without a gap or an overlap, so each sample of a triangle across all slabs is in exactly one
-/// slab.
+/// Checks that neighbouring slabs meet without a gap or an overlap. Each sample of a triangle across all slabs is then
+/// in exactly one slab.
 #[test]
 fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
     let one = PlaneStack::new([256, 256], 1, 200.0).expect("valid");
@@ -82,7 +82,7 @@ fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
     assert!(divided.slices.iter().filter(|slice| slice.accepted > 0).count() > 5);
 }
 
-/// A near and a far square: the flat screen shows the near one, in whatever order they are drawn.
+/// Checks that a flat screen shows the nearer of two squares in either order of drawing.
 #[test]
 fn a_flat_screen_hides_what_is_behind() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {
@@ -105,7 +105,8 @@ fn a_flat_screen_hides_what_is_behind() {
     }
 }
 
-/// The same Mig on a swept screen, a stack and a flat screen, from one recording.
+/// Checks that one recording can be shown on a swept screen, a stack of planes and a flat screen. The scene is the Mig,
+/// which has 417 triangles.
 #[test]
 fn a_scene_does_not_know_the_display() {
     let scene = builtin("mig").expect("built in");
@@ -125,7 +126,7 @@ fn a_scene_does_not_know_the_display() {
     }
 }
 
-/// The closed forms of section 6 for 396 slices of 768 x 768, from counts alone.
+/// Checks the formulas of section 6 for 396 slices of 768 x 768 pixels, from counts alone.
 #[test]
 fn the_model_of_time_is_the_specifications() {
     let size = [768, 768];
@@ -168,7 +169,7 @@ fn a_table_beyond_its_limits_is_refused() {
     assert!(error.contains("fill_mpixels"), "{error}");
 }
 
-/// Low precision causes the dead zone: with q fraction bits nothing shows within 2^-(q+1) / S of the axis.
+/// Checks that low precision causes a dead zone: with q fraction bits nothing is shown within 2^-(q+1) / S of the axis.
 #[test]
 fn planes_of_few_bits_leave_a_dead_zone() {
     for (bits, radius) in [(4, 3.94), (8, 0.246)] {
@@ -187,7 +188,8 @@ fn planes_of_few_bits_leave_a_dead_zone() {
     assert_eq!(dead_zone_radius(&exact), Some(0), "a property of the display, not of what is lit");
 }
 
-/// Section 1 of the specification: the prism is bright near the axis, exact planes dark; the hyperbola neither.
+/// Checks section 1 of the specification. Near the axis, the prism is bright and exact planes are dark. The hyperbola
+/// is neither.
 #[test]
 fn brightness_over_radius_by_variant() {
     let wall = [[-300.0, -200.2, 1.3], [300.1, -200.2, 1.3], [0.6, 280.7, 1.3]];

@@ -1,5 +1,5 @@
-//! Cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the reference model and by the fast
-//! path.
+//! Tests of cases 13 to 20 and 25 of the specification: fragments of every clip variant, by the reference model and by
+//! the fast rasterizer.
 
 mod support;
 
@@ -10,7 +10,8 @@ const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 const HYPERBOLA: SliceClip = SliceClip::Hyperbolic(0.25);
 
-/// The specification's tolerance for other orders of the same sums in double precision.
+/// Checks that two numbers of fragments are equal within the specification's tolerance. It allows for other orders of
+/// the same sums in double precision.
 fn same(found: u64, expected: u64, what: &str) {
     assert!(found.abs_diff(expected) <= 2, "{what}: {found}, not {expected}");
 }
@@ -67,8 +68,9 @@ fn case_15_a_triangle_in_a_boundary_plane_is_in_one_slice() {
     }
 }
 
-/// The half-open rule assigns the triangle of case 15 to slice 50 alone, whose bin is on the other side of the diagonal
-/// plane. Bins must therefore count a triangle in a plane on both sides, even without a dilated clip.
+/// Checks a triangle that lies in a bin plane. The half-open rule assigns the triangle of case 15 to slice 50 alone,
+/// whose bin is on the other side of the diagonal plane. Bins must therefore count such a triangle on both sides, even
+/// if the clip enlarges nothing.
 #[test]
 fn bins_keep_a_triangle_in_a_bin_plane() {
     let triangle = [[50.0, -100.2, 50.0], [200.3, -100.2, 200.3], [50.0, 120.4, 50.0]];
@@ -141,7 +143,7 @@ fn case_25_tiles_of_a_wall() {
     }
 }
 
-/// P5: the number of times that the commands are replayed for a slice.
+/// Checks figure P5: the number of times that the commands are replayed for a slice.
 #[test]
 fn passes_are_as_published() {
     let passes = |clip| {
@@ -152,7 +154,8 @@ fn passes_are_as_published() {
     assert_eq!(SliceClip::ALL.map(passes), [1, 2, 1, 2, 1, 1]);
 }
 
-/// One-pass variants generate every fragment between near and far plane. Clip planes generate only accepted fragments.
+/// Checks the number of generated fragments. Clip variants with one pass generate every fragment between the near and
+/// far planes. Clip planes generate only accepted fragments.
 #[test]
 fn what_is_generated_and_not_accepted() {
     let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;

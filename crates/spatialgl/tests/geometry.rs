@@ -1,4 +1,4 @@
-//! Cases 1 to 11 and 26 of the specification: slices, ties, clip variants and projections as numbers.
+//! Tests of cases 1 to 11 and 26 of the specification: slices, tie rules, clip variants and projections as numbers.
 
 mod support;
 
@@ -85,7 +85,7 @@ fn case_4_half_thickness_of_the_slab() {
     }
 }
 
-/// The volume's test agrees with the closed form of the thickness, just inside and just outside.
+/// Checks that a slice's volume test agrees with the formula of the thickness, just inside and just outside.
 #[test]
 fn a_slice_accepts_up_to_its_half_thickness() {
     for clip in SliceClip::ALL {
@@ -116,7 +116,8 @@ fn case_5_planes_that_show_a_point() {
     }
 }
 
-/// Returns the number of integer points within a radius, their memberships, and the number of points of each plane.
+/// Returns the number of integer points within a radius, the total number of slices that contain them, and the number
+/// of points in each plane.
 fn integer_points(ties: TieRule, radius: i32) -> (usize, usize, Vec<usize>) {
     let config = SweptConfig { ties, ..SweptConfig::perspecta(EXACT, Projection::Orthographic) };
     let display = SweptDisplay::new(config).expect("valid");
@@ -153,7 +154,7 @@ fn case_7_integer_points_within_384() {
     assert_eq!(integer_points(TieRule::Closed, 384).1, 464_272);
 }
 
-/// P4 as printed, at the points where the rule is ambiguous.
+/// Checks figure P4 as printed, at the points where the printed rule is ambiguous.
 #[test]
 fn the_two_printed_tie_rules_treat_a_boundary_plane_as_they_say() {
     let accepting = |ties: TieRule, x: f64, z: f64| {
@@ -189,7 +190,7 @@ fn case_9_an_eye_aside_and_a_shear() {
     close(z, 0.992_405, 5.1e-7);
 }
 
-/// Returns the area in the image of a triangle given as (u, v, s), pixels.
+/// Returns the area of a projected triangle in the image, in square pixels. The corners are given as (u, v, s).
 fn area(projection: Projection, corners: Triangle) -> f64 {
     let display = swept(SliceClip::Prism, projection);
     let [a, b, c] = corners.map(|corner| {
@@ -212,7 +213,7 @@ fn cases_10_and_11_areas_of_triangles_on_edge() {
     close(area(unsheared, eyes_own), 14.677_104, 5.1e-7);
 }
 
-/// The wall z = 40.1: accepted from u = c / (sin + T cos) to c / (sin - T cos), and nowhere else.
+/// Checks the wall z = 40.1. A slice accepts it from u = c / (sin + T cos) to u = c / (sin - T cos), and nowhere else.
 #[test]
 fn case_26_where_a_wall_crosses_a_slice() {
     let display = swept(EXACT, Projection::Orthographic);

@@ -1,4 +1,4 @@
-//! Hard cases of section 8 of the specification, and all kinds of input that cannot be drawn.
+//! Tests of the hard cases in section 8 of the specification, and of all kinds of input that cannot be drawn.
 
 mod support;
 
@@ -12,7 +12,8 @@ fn config(slices: u32, width: u32, height: u32, clip: SliceClip, projection: Pro
     SweptConfig { slices, width, height, ..SweptConfig::perspecta(clip, projection) }
 }
 
-/// Draws with both renderers in all variants and projections, with and without bins, and returns the fragments of each.
+/// Draws triangles with both renderers in all clip variants and projections, with and without bins. Returns the number
+/// of fragments of each variant.
 fn everywhere(triangles: &[Triangle]) -> Vec<u64> {
     let commands = recording(triangles);
     let near = Projection::Perspective { eye: [5.0, 3.0], distance: 40.0, shear: [0.0, 0.1] };
@@ -140,7 +141,8 @@ fn lit_of(frame: &VolumeFrame) -> u64 {
     pixels.filter(|(x, y)| frame.planes.pixel(0, *x, *y) != 0).count() as u64
 }
 
-/// A line perpendicular to a slice leaves a dot of its width; one in the slice is a bar with round ends.
+/// Checks lines. A line perpendicular to a slice leaves a dot of the line's width. A line in the slice is a bar with
+/// round ends.
 #[test]
 fn lines_and_points_have_their_size_on_the_slice() {
     let draw = |a: DVec3, b: DVec3, width: f64| {

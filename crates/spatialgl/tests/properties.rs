@@ -1,4 +1,4 @@
-//! Properties of section 8 of the specification, on random triangles, points and settings.
+//! Tests of the properties in section 8 of the specification, on random triangles, points and settings.
 
 mod support;
 
@@ -10,7 +10,7 @@ use support::*;
 const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 
-/// Returns a small display, so that tests can draw many volumes.
+/// Returns a small display, so that tests can draw many volumes in a short time.
 fn small(clip: SliceClip, projection: Projection) -> SweptDisplay {
     let config = SweptConfig { slices: 44, width: 64, height: 56, ..SweptConfig::perspecta(clip, projection) };
     SweptDisplay::new(config).expect("valid")
@@ -38,8 +38,8 @@ fn clips() -> impl Strategy<Value = SliceClip> {
     prop::sample::select(SliceClip::ALL.to_vec())
 }
 
-/// Returns a recording of triangles of different colours, some drawn as lines or points, with a rule for combining
-/// fragments.
+/// Returns recorded commands for triangles of different colours, some drawn as lines or points. `combine` is the rule
+/// for several fragments on one pixel.
 fn mixed(triangles: &[Triangle], combine: Combine) -> CommandBuffer {
     let mut context = Context::default();
     context.combine = combine;
@@ -59,7 +59,7 @@ fn kept(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { keeps_colours: true, ..config }
 }
 
-/// Returns slice and pixel of every drawn voxel.
+/// Returns index of the slice and index of the pixel for every drawn voxel.
 fn drawn(frame: &VolumeFrame) -> std::collections::BTreeSet<(usize, u32)> {
     let slices = frame.colours.as_ref().expect("kept").iter().enumerate();
     slices.flat_map(|(k, samples)| samples.iter().map(move |sample| (k, sample.pixel))).collect()
@@ -158,7 +158,7 @@ proptest! {
         }
     }
 
-    /// The two triangles of a quad together cover each sample once, wherever the common edge runs.
+    /// Checks that the two triangles of a quad together cover each sample once, for any position of the common edge.
     #[test]
     fn a_shared_edge_is_lit_by_one_of_its_triangles(
         x in prop::array::uniform4(-28i32..28), y in prop::array::uniform4(-28i32..28),
@@ -179,7 +179,7 @@ proptest! {
         prop_assert_eq!(fragments, one + other);
     }
 
-    /// Unpacking gives the halftone of the colours, pixel by pixel.
+    /// Checks that unpacking the words gives the halftoned colours, pixel by pixel.
     #[test]
     fn packed_bits_are_the_halftone_of_the_colours(triangles in mesh()) {
         let frame = volume(&small(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC), &mixed(&triangles, Combine::Last), &kept(VolumeConfig::paper()));
@@ -197,7 +197,7 @@ proptest! {
     }
 }
 
-/// The sum over 198 slices of fragments / |n . e_s| approaches the area, for the exact clip.
+/// Checks that the sum over 198 slices of fragments / |n . e_s| approaches the triangle's area, for the exact clip.
 #[test]
 fn fragments_over_facing_are_the_area() {
     let [a, b, c] = T4.map(DVec3::from_array);

@@ -1,11 +1,12 @@
-//! Supersampling: colours follow from the covered area, and counts from the number of samples.
+//! Tests of supersampling: colours follow from the covered area, and counts from the number of samples.
 
 mod support;
 
 use spatialgl::*;
 use support::*;
 
-/// Returns a white rectangle in slice 0, from column 400 to `beyond` pixels after it, in rows 300 to 310.
+/// Returns a recording of a white rectangle in slice 0. It covers rows 300 to 310, from column 400 to `beyond` pixels
+/// after it.
 fn rectangle(beyond: f64) -> CommandBuffer {
     let [left, right, top, bottom] = [16.0, 16.0 + beyond, 84.0, 74.0];
     recording(&[
@@ -29,7 +30,8 @@ fn colour(frame: &VolumeFrame, x: u32, y: u32) -> Option<[u8; 3]> {
     colours[0].iter().find(|sample| sample.pixel == y * 768 + x).map(|sample| sample.colour)
 }
 
-/// Samples at 1/4 and 3/4 (or 1/8, 3/8, 5/8, 7/8) of a pixel: of white, so many of all samples.
+/// Checks the brightness of a partly covered pixel. Samples lie at 1/4 and 3/4 of a pixel, or at 1/8, 3/8, 5/8 and 7/8.
+/// The pixel is as bright as the fraction of its samples inside a white rectangle.
 #[test]
 fn a_pixel_is_as_bright_as_it_is_covered() {
     for (samples, beyond, expected) in [(4, 10.5, 128), (16, 10.25, 64), (16, 10.75, 191), (16, 10.5, 128)] {
@@ -42,7 +44,8 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
     }
 }
 
-/// The rectangle lies in slice 0, which alone has it: 10 x 10 pixels of so many samples.
+/// Checks that every sample counts as a fragment. Only slice 0 contains the rectangle: 10 x 10 pixels, each with all
+/// samples.
 #[test]
 fn every_sample_is_counted_as_a_fragment() {
     for samples in [4, 16] {
@@ -62,7 +65,7 @@ fn both_rasterisers_take_the_same_samples() {
     assert_eq!(fast.stats, literal.stats);
 }
 
-/// The width of a line stays the same: the numbers of lit pixels differ by at most one on each side.
+/// Checks that the width of a line stays the same: the numbers of lit pixels differ by at most one on each side.
 #[test]
 fn a_line_keeps_its_width() {
     let ends = [[20.0, -50.0, 0.0], [20.0, 50.0, 0.0]].map(|p| Vertex::new(p.into(), [255; 3]));
@@ -76,7 +79,8 @@ fn a_line_keeps_its_width() {
     assert_eq!(width, 6);
 }
 
-/// In the time model, fill, clears and reads grow with the number of samples, but the bytes sent do not.
+/// Checks the time model with more samples. Fill, clears and reads grow with the number of samples, but the bytes sent
+/// do not.
 #[test]
 fn more_samples_cost_fill_and_no_bytes() {
     let size = [768, 768];

@@ -1,4 +1,4 @@
-//! Numeric cases 23 and 24: the words that the projector receives.
+//! Tests of cases 23 and 24 of the specification: the words that the projector receives.
 
 use spatialgl::{
     Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
@@ -18,7 +18,7 @@ impl SliceRenderer for Painted {
     }
 }
 
-/// Returns bytes 0 to 3 of a word of a slice of 32 x 8 pixels, with tiles and without.
+/// Draws a slice of 32 x 8 pixels with tiles and without, and returns bytes 0 to 3 of one of its words.
 fn bytes(colours: fn(u32) -> [u8; 3], row: usize, word: usize) -> [u8; 4] {
     let display = PlaneStack::new([32, 8], 1, 4.0).expect("valid");
     let words = [Tiling::PAPER, Tiling::OFF].map(|tiling| {

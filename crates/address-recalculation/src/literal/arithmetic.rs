@@ -10,9 +10,9 @@ pub(super) const fn unsigned(value: u64, bits: u64) -> u64 {
     value & (u64::MAX >> (64 - bits))
 }
 
-/// Multiplies two signed words by partial products. The product has as many bits as both words together.
+/// Multiplies two signed words by adding partial products. The product has as many bits as both words together.
 ///
-/// Each bit of the second word adds a partial product, and its sign bit subtracts one.
+/// Each bit of the second word adds a partial product. The sign bit subtracts one.
 pub(super) fn multiply(first: i64, second: i64, bits: [u64; 2]) -> i64 {
     let width = bits[0] + bits[1];
     let sign = bits[1] - 1;
@@ -21,7 +21,7 @@ pub(super) fn multiply(first: i64, second: i64, bits: [u64; 2]) -> i64 {
     signed(sum - partial(sign), width)
 }
 
-/// Multiplies two unsigned words by a partial product for each bit of the second word.
+/// Multiplies two unsigned words by adding a partial product for each bit of the second word.
 pub(super) fn multiply_unsigned(first: u64, second: u64) -> u64 {
     (0..64 - second.leading_zeros()).filter(|bit| second >> bit & 1 == 1).map(|bit| first << bit).sum()
 }
@@ -35,7 +35,7 @@ pub(super) struct Divider {
 }
 
 impl Divider {
-    /// Starts a division. `divisor` must not be less than `dividend`. Equal operands give a quotient of all ones.
+    /// Starts a division. `divisor` must be at least `dividend`. Equal operands give a quotient of all ones.
     pub(super) const fn new(dividend: u64, divisor: u64) -> Self {
         Self { divisor, remainder: dividend, quotient: 0 }
     }

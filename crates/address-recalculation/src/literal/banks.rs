@@ -3,16 +3,16 @@
 use crate::face::{CubeFace, TexelAddress};
 use crate::texel::{DEPTH_FARTHEST, FaceSet, TexelFormat, narrowed, widened};
 
-/// Colour and depth as a bank stores them. With 16 bits, the fields hold the narrow words.
+/// Colour and depth as a bank stores them. With 16-bit formats, the fields hold the short words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cell {
-    /// Stored bits of the depth, all ones for an empty texel.
+    /// Stored bits of the depth. All bits are one for an empty texel.
     pub(super) depth: u32,
     /// Stored bits of the colour.
     pub(super) colour: u32,
 }
 
-/// The visible buffer of one display memory as four banks. Each bank holds a part of all six faces.
+/// The visible buffer of one display memory as four banks. Each bank holds a quarter of the texels of all six faces.
 #[derive(Clone, Debug)]
 pub struct BankedMemory {
     texels: u32,

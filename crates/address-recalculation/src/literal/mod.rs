@@ -4,7 +4,7 @@
 //! table - multiply - add - add - face - divide x q - address - memory - compare x log2 n - interpolate -> light
 //! ```
 //!
-//! A pixel enters at each clock and lights after as many clocks as there are stages. Products are sums of partial
+//! A pixel enters at each clock and is displayed after as many clocks as there are stages. Products are sums of partial
 //! products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds the nearest texel.
 //!
 //! The reference model shares with the fast model only the names of faces and the format of words.
@@ -26,7 +26,7 @@ use arithmetic::{Divider, multiply, multiply_unsigned, signed};
 use registers::Registers;
 use std::collections::VecDeque;
 
-/// A stage of the pipeline.
+/// A stage of the pipeline, which takes one clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Table,
@@ -44,15 +44,15 @@ enum Stage {
 /// A pixel that leaves the last stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputPixel {
-    /// Column and line in the frame.
+    /// Column and line of the pixel in the frame.
     pub pixel: [u32; 2],
     /// Displayed colour, 0x00RRGGBB.
     pub colour: u32,
-    /// The texels from which the pixel was computed.
+    /// The four texels from which the pixel was computed, with their weights.
     pub footprint: Footprint,
 }
 
-/// The pipeline between the beam and the display memories, register by register.
+/// The pipeline between the video scan and the display memories, register by register.
 #[derive(Clone, Debug)]
 pub struct ReferencePipeline {
     table: LensTable,
@@ -90,7 +90,7 @@ impl ReferencePipeline {
         }
     }
 
-    /// Returns the number of stages from the table to the light.
+    /// Returns the number of stages from reading the table to displaying the pixel.
     #[must_use]
     pub fn stages(&self) -> usize {
         self.stages.len()
@@ -98,8 +98,8 @@ impl ReferencePipeline {
 
     /// Simulates one clock. All pixels advance by one stage, and the pixel that leaves the last stage is returned.
     ///
-    /// `entering` is the new pixel with its latched orientation. `memories` and `background` are the buffers visible at
-    /// this clock.
+    /// `entering` is the new pixel with the orientation that was read for it. `memories` and `background` are the
+    /// buffers that are visible at this clock.
     pub fn clock(
         &mut self,
         entering: Option<([u32; 2], MatrixWords)>,
@@ -145,7 +145,7 @@ impl ReferencePipeline {
         }
     }
 
-    /// Returns the number of bits of a sum of three products: one more than a product.
+    /// Returns the number of bits in a sum of three products. It is one more than in a product.
     const fn sum_bits(&self) -> u64 {
         self.vector_bits + self.matrix_bits + 1
     }
@@ -173,7 +173,8 @@ impl ReferencePipeline {
         }
     }
 
-    /// Selects the face by comparators, and the face's axes by multiplexers and sign changers.
+    /// Selects the face with comparators. Multiplexers and sign changers then compute the components along the face's
+    /// axes.
     fn select_face(&self, registers: &mut Registers) {
         let [x, y, z] = registers.sums;
         let longer = [x.abs() >= y.abs(), x.abs() >= z.abs(), y.abs() >= z.abs()];
@@ -192,8 +193,8 @@ impl ReferencePipeline {
         registers.dividers = [forward + right, forward - up].map(|dividend| Divider::new(dividend as u64, divisor));
     }
 
-    /// Multiplies the quotients by the size of the face. Bits above the binary point select the texel, and lower bits
-    /// the fractions.
+    /// Multiplies the quotients by the size of the face. The bits above the binary point select the texel. The bits
+    /// below it are the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
         // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.

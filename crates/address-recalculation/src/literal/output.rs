@@ -36,7 +36,8 @@ fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: 
     read
 }
 
-/// Simulates one level of the comparator tree. Of two neighbours the nearer one stays, and the first one wins a tie.
+/// Simulates one level of the comparator tree. Of two neighbouring candidates the nearer one stays. At equal depth, the
+/// first one stays.
 ///
 /// A candidate without a neighbour passes unchanged.
 pub(super) fn compare(registers: &mut Registers) {
@@ -55,7 +56,7 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Interpolates the four texels of every remaining candidate.
+/// Interpolates the four texels of every candidate that is left in the comparator tree.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);
@@ -89,7 +90,7 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// Rounding of the bits below the word.
+/// Rule for rounding away the bits below the last bit of a word.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,
@@ -101,8 +102,8 @@ fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
     channel(16) << 16 | channel(8) << 8 | channel(0)
 }
 
-/// Returns the weighted sum of values, with weights that add up to 2^bits. If a weight is `None`, returns the mean of
-/// three.
+/// Returns the weighted sum of four values. The weights add up to 2^bits. If a weight is `None`, returns the mean of
+/// the other three values.
 fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
     // Beyond a corner, take the mean of the other three.
     if weights.contains(&None) {

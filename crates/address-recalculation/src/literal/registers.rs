@@ -1,15 +1,15 @@
-//! The registers that travel with a pixel from stage to stage.
+//! The registers that move with a pixel from stage to stage.
 
 use super::arithmetic::Divider;
 use crate::address::Footprint;
 use crate::face::CubeFace;
 use crate::orientation::MatrixWords;
 
-/// Four texels of a memory in the comparators. After interpolation, all four are equal.
+/// The four texels of a memory in the comparators. After interpolation, all four are equal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) depths: [u32; 4],
-    /// Colours with 8 bits per channel. For empty texels, the background colours.
+    /// Colours with 8 bits per channel. Empty texels have the background colours.
     pub(super) colours: [u32; 4],
 }
 

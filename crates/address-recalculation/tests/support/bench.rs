@@ -1,4 +1,4 @@
-//! A display on a test bench: clock, input messages and outputs.
+//! A test bench with a display: clock, input messages and outputs.
 
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, ArpTiming, begin_update, region_grid};
 use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A region with 16,384 colours, then 16,384 depths, and a count of reads.
+/// A region with 16,384 equal colours, then 16,384 equal depths, and a count of reads.
 #[derive(Debug)]
 pub(crate) struct Flat {
     colour: u32,
@@ -32,7 +32,7 @@ pub(crate) fn flat(colour: u32, depth: u32) -> Arc<Flat> {
     Arc::new(Flat { colour, depth, asked: AtomicU64::new(0) })
 }
 
-/// A display with its clock and its outputs.
+/// A display with a clock and its recorded outputs.
 pub(crate) struct Bench {
     pub(crate) display: Box<dyn Display>,
     pub(crate) outputs: Vec<(Time, DisplayOutput)>,

@@ -1,4 +1,4 @@
-//! Faces and heads for tests.
+//! Faces and head orientations for tests.
 #![allow(dead_code, reason = "not every test needs all of it")]
 
 pub(crate) mod bench;

@@ -1,4 +1,5 @@
-//! Numbers that follow from printed numbers alone. No simulation could change them, so they have no verdict.
+//! Numbers that follow by arithmetic from numbers printed in the paper. No simulation could change them, so they have
+//! no verdict.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;

@@ -1,4 +1,4 @@
-//! The figures as a Markdown document.
+//! The published figures and the simulated values as a Markdown document.
 
 use super::definitions::{SEGMENTS, definitions};
 use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
@@ -9,7 +9,8 @@ use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use std::fmt::Write as _;
 
-/// Returns the text of docs/address-recalculation.md: the rows with their standing, then the detailed tables.
+/// Returns the text of docs/address-recalculation.md: the rows with the provenance of each number, then the detailed
+/// tables.
 #[must_use]
 pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
     let mut text = String::new();
@@ -143,7 +144,7 @@ fn defined(text: &mut String) {
     }
 }
 
-/// Returns the relative errors of memories 1 to 3 as text, in percent.
+/// Returns the relative errors of the update rates of display memories 1 to 3 as text, in percent.
 fn errors(rates_hz: &[f64]) -> String {
     let error = |memory: usize| format!("{:+.1} %", 100.0 * (rates_hz[memory] / RATES_HZ[memory] - 1.0));
     [1, 2, 3].map(error).join(", ")
@@ -167,7 +168,7 @@ fn fits(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Returns the ranked interpretations of table 1 as Markdown.
+/// Returns the interpretations of the paper's table 1 as Markdown, ranked by their error.
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
@@ -197,7 +198,7 @@ pub fn interpretations(all: &Interpretations) -> String {
     text
 }
 
-/// Returns the best single fit, and the prediction of each rate from the other rates, as Markdown.
+/// Returns two results as Markdown: the best single fit, and the prediction of each update rate from the other rates.
 fn best_of_all(all: &Interpretations) -> String {
     let mut text = String::new();
     let every = all.ranked.iter().flat_map(|ranked| &ranked.tried);
@@ -230,7 +231,7 @@ fn best_of_all(all: &Interpretations) -> String {
     text
 }
 
-/// Returns the reasons for the chosen rules as Markdown.
+/// Returns the reasons for the rules that this project chose among the interpretations, as Markdown.
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
@@ -278,7 +279,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Writes the consequences that the conservation of sections has for table 2.
+/// Writes what follows for table 2 from the fact that cutting does not change the number of sections.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -400,7 +401,8 @@ fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// Writes the size from which on the size component decides (A8).
+/// Writes the ratio of size to distance above which an object's growth on the screen decides how long its image is
+/// valid (statement A8).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. Which angle of the size may change, and by how much? Is\n\

@@ -1,4 +1,4 @@
-//! The experiments E2 to E9 with an ideal renderer, run once for all rows.
+//! The experiments E2 to E9 with an ideal renderer. They are run once for all rows of the comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
@@ -16,27 +16,28 @@ use glam::{DMat3, DQuat, DVec3};
 use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
 use tracking::motion::Walk;
 
-/// Frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800 frames.
+/// Number of frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800
+/// frames.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
-/// Settings and results of one walk of an experiment.
+/// Settings and results of one simulated walk of the viewer.
 #[derive(Clone, Debug)]
 pub struct NamedWalk {
-    /// Name in tables and documents.
+    /// Name of the viewer's walk in tables and documents.
     pub name: &'static str,
     pub settings: Settings,
     pub tally: WalkTally,
     pub report: Report,
 }
 
-/// A cell size fitted to one rate of table 1.
+/// A cell side fitted to one update rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The rules of the fit.
+    /// Rules with which the cell side was fitted.
     pub rules: Rules,
     /// Fitted side of a cell, in metres.
     pub cell_m: f64,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
 }
 
@@ -45,38 +46,39 @@ pub struct Fit {
 pub struct SlowRendererResult {
     /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
-    /// Updates per second of each memory.
+    /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
-    /// Retraces with an incomplete update, for each memory.
+    /// Number of retraces at which an update was incomplete, for each memory.
     pub missed: Vec<u64>,
 }
 
 /// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Cell sizes fitted in the gallery, for the usual rules and for rings of equal width.
+    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
     pub fits: [Fit; 2],
     /// All interpretations of table 1.
     pub interpretations: Interpretations,
-    /// Thresholds, each with the matching side of a cell.
+    /// Thresholds of the image error, each with the cell side that fits table 1.
     pub thresholds: Vec<ThresholdRow>,
-    /// Number of segments of the gallery with the fitted cells.
+    /// Number of segments into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: cut and torn, cut and warped, uncut, and warped without cascade.
+    /// Four walks with the fitted cells: cut with tears, cut and warped, uncut, and warped without cascade.
     pub walks: Vec<NamedWalk>,
-    /// Walks with slower and slower renderers.
+    /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
-    /// Factors by which draws of point objects fall: 4 memories at 1 m/s, and 5 memories at 0.37 m/s.
+    /// Factors by which priority rendering reduces draws of point objects: 4 memories at 1 m/s, and 5 memories at 0.37
+    /// m/s.
     pub reductions: [f64; 2],
-    /// Deciding component of validity, by size over distance.
+    /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
-    /// Size from which on the size component decides, for each interpretation.
+    /// Ratios of size to distance above which growth on the screen decides the validity, for each interpretation.
     pub size_limits: Vec<SizeLimit>,
-    /// Bend of a straight edge on the screen and through the lens, in pixels.
+    /// Largest deviation of a straight edge from a straight line, in pixels: on the screen, and through the lens.
     pub lens_px: [f64; 2],
-    /// Number of texels in which four memories, all drawn from one position, differ from a single memory.
+    /// Number of texels that differ between a single memory and four memories that are all drawn from one position.
     pub composite_differs: u64,
-    /// Number of pixels that a stalled renderer changes in the view of a rotating head.
+    /// Number of pixels that change in the view of a rotating head if the renderer stalls.
     pub turned_differ: u64,
 }
 
@@ -134,7 +136,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the torn walk with slower and slower renderers.
+/// Repeats the walk with tears for renderers of decreasing speed.
 fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, ExperimentError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -149,7 +151,7 @@ fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRen
 /// Threshold of experiments E3 and E4 in degrees: one texel of an ideal face.
 const THETA_DEG: f64 = 90.0 / 512.0;
 
-/// Number of points on a disc of 100 m around the walker, distributed evenly by area.
+/// Number of point objects on a disc of 100 m around the walker, distributed evenly by area.
 const POINTS: usize = 20_000;
 
 /// Returns the factor by which priority rendering reduces draws of point objects, relative to drawing all at 60 Hz.
@@ -170,18 +172,18 @@ pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     frames as f64 * POINTS as f64 / objects.counts()[1] as f64
 }
 
-/// Validity of an object at 10 m that a walker approaches at 1 m/s.
+/// Times for which the image of an object at 10 m stays valid if a walker approaches at 1 m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeRow {
-    /// Diameter of the object over the distance of its middle.
+    /// Diameter of the object, divided by the distance of its middle.
     pub size_over_distance: f64,
-    /// Validity under translation, from the distance of the middle, in seconds.
+    /// Time until translation changes the image by the threshold, computed from the distance of the middle, in seconds.
     pub translation_s: f64,
-    /// Validity under the change of size, for a disc and for a sphere, in seconds.
+    /// Time until growth changes the image by the threshold, for a disc and for a sphere, in seconds.
     pub size_s: [f64; 2],
 }
 
-/// Returns rows for sizes of 0.1 to 20 times the distance.
+/// Returns rows for diameters from 0.1 to 20 times the distance.
 #[must_use]
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(THETA_DEG);
@@ -196,30 +198,32 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Size over distance from which on the size component decides, for one interpretation of size and distance.
+/// Ratio of size to distance above which growth on the screen decides the validity, for one interpretation of both
+/// words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
-    /// Name of the angle that may change by the threshold or by twice the threshold.
+    /// Name of the angle that is allowed to change: of the diameter or of the radius.
     pub angle: &'static str,
-    /// Threshold of the radius' angle, relative to the threshold of translation.
+    /// Allowed change of the radius' angle, divided by the threshold of translation.
     pub factor: f64,
-    /// Limit of the diameter over the distance of the sphere's middle.
+    /// Limit of the ratio of the diameter to the distance of the sphere's middle.
     pub of_middle: f64,
-    /// Limit of the diameter over the distance of the sphere's nearest point.
+    /// Limit of the ratio of the diameter to the distance of the sphere's nearest point.
     pub of_nearest: f64,
 }
 
-/// Returns the limits for spheres under three interpretations, with translation measured at the middle.
+/// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
+/// sphere.
 ///
-/// The angle of the diameter may change by the threshold. The angle of the radius may change by the threshold or by
-/// twice the threshold.
+/// The interpretations differ in the angle that is allowed to change: the diameter by the threshold, the radius by the
+/// threshold, or the radius by twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
 }
 
-/// Number of bisection steps, more than a double has bits.
+/// Number of bisection steps. A double has fewer bits, so more steps change nothing.
 const BISECTION_STEPS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {

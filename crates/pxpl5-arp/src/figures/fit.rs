@@ -1,4 +1,4 @@
-//! The side of a cell, fitted to one rate of table 1. The other rates serve as checks.
+//! The side of a cell, fitted to one update rate of table 1. The other rates serve as checks.
 
 use super::rules::Rules;
 use crate::error::ExperimentError;
@@ -12,13 +12,14 @@ use tracking::motion::Walk;
 /// Mean update rates of memories 0 to 3, in Hz (table 1).
 pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 
-/// Index of the memory whose rate determines the side of a cell.
+/// Index of the memory whose update rate determines the side of a cell.
 pub const RATE_FITTED: usize = 1;
 
-/// Sides of cells to try, in tenths of a metre.
+/// Cell sides to try, in tenths of a metre.
 const TENTHS: std::ops::RangeInclusive<u32> = 15..=40;
 
-/// Returns the updates per second of each memory on a walk at 1 m/s. Only the policy runs, and nothing is drawn.
+/// Returns the updates per second of each display memory for a viewer who walks at 1 m/s. Only the policy runs, and
+/// nothing is drawn.
 ///
 /// # Errors
 ///
@@ -34,7 +35,8 @@ pub fn policy_rates_hz(
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
 
-/// Returns the updates per second of each memory for a set of occupied cells. `eye` returns the position in each frame.
+/// Returns the updates per second of each display memory for a set of occupied cells. `eye` returns the position of the
+/// eye in each frame.
 pub(super) fn rates_hz(
     held: impl IntoIterator<Item = Cell>,
     eye: impl Fn(u64) -> DVec3,
@@ -52,7 +54,7 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the side of a cell whose rate of memory [`RATE_FITTED`] is nearest to table 1, and the rates of all
+/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1, and the rates of all
 /// memories.
 ///
 /// The side is in metres, in steps of 0.1 m.

@@ -1,8 +1,9 @@
-//! Interpretations of table 1: each open question of the paper has several answers, which are simulated and ranked.
+//! Interpretations of the paper's table 1: each open question of the paper has several answers, which are simulated and
+//! ranked.
 //!
-//! If the hall and the path are measured in cells, rates depend only on the product of threshold and side of a cell.
-//! One number is therefore fitted to three rates. A side stands for all pairs of threshold and side with the same
-//! product.
+//! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
+//! side. Therefore one number is fitted to three rates. A cell side stands for all pairs of threshold and cell side
+//! with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -14,17 +15,17 @@ use priority_rendering::{Cell, PriorityTiming};
 use serde::Serialize;
 use tracking::motion::Walk;
 
-/// A hall and a path through it.
+/// A hall and a path through this hall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Situation {
-    /// Straight through the middle of a hall of seven by seven cells.
+    /// A straight path through the middle of a hall of seven by seven cells.
     Straight,
-    /// From corner to corner of a hall of seven by seven cells.
+    /// A path from corner to corner of a hall of seven by seven cells.
     Diagonal,
-    /// Once around the middle of a hall of seven by seven cells, halfway to its walls.
+    /// A path once around the middle of a hall of seven by seven cells, halfway between middle and walls.
     Round,
-    /// The path of the gallery of 20 m, for one minute.
+    /// The path of the scene `gallery`, scaled to 20 m, for one minute.
     Gallery,
 }
 
@@ -61,7 +62,7 @@ impl Situation {
         }
     }
 
-    /// Returns the updates per second of each memory on a walk at 1 m/s.
+    /// Returns the updates per second of each display memory for a viewer who walks at 1 m/s.
     fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], ExperimentError> {
         let numbers = rules.numbers(cell_m);
         let rates = if self == Self::Gallery {
@@ -80,17 +81,17 @@ impl Situation {
     }
 }
 
-/// Rates of the memories for one side of a cell.
+/// Update rates of the memories for one side length of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Side of a cell in metres, for the usual threshold.
+    /// Side of a cell in metres. It applies to the default threshold.
     pub cell_m: f64,
-    /// Updates per second of memories 0 to 3.
+    /// Updates per second of display memories 0 to 3.
     pub rates_hz: [f64; 4],
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors of some memories, in percent.
+    /// Returns the root mean square of the relative errors of the update rates of the given memories, in percent.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -105,47 +106,47 @@ impl Trial {
 /// Indices of the compared memories. Memory 0 is left out, because all rules draw it in every frame.
 const COMPARED: [usize; 3] = [1, 2, 3];
 
-/// Results of one set of rules in one situation.
+/// Results of one set of rules on one path through one hall.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
     pub rules: Rules,
-    /// Hall and path.
+    /// Hall through which the viewer walks, and path of the viewer.
     pub situation: Situation,
-    /// Results for every side that was tried.
+    /// Results for every cell side that was tried.
     #[serde(skip)]
     pub trials: Vec<Trial>,
-    /// The trial with the smallest error over all three rates.
+    /// The trial with the smallest error over the rates of all compared memories.
     pub best: Trial,
-    /// Error of the best trial, in percent.
+    /// Error of the update rates of the best trial, in percent.
     pub error_percent: f64,
-    /// Cross-validation error in percent: each rate is predicted with the side that fits the other two rates best.
+    /// Cross-validation error in percent: each rate is predicted with the cell side that fits the other two rates best.
     pub left_out_percent: f64,
 }
 
-/// Results of one set of rules over all situations.
+/// Results of one set of rules over all halls and paths.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RankedRules {
     pub rules: Rules,
-    /// Mean error over all situations, in percent.
+    /// Mean error of the update rates over all halls and paths, in percent.
     pub mean_error_percent: f64,
-    /// Mean cross-validation error over all situations, in percent.
+    /// Mean cross-validation error over all halls and paths, in percent.
     pub mean_left_out_percent: f64,
-    /// Results in each situation.
+    /// Results for each hall and path.
     pub tried: Vec<Tried>,
 }
 
-/// A rate predicted by the fit that is best for the other two rates.
+/// An update rate, predicted by the fit that is best for the other two rates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOutRate {
-    /// Index of the memory whose rate was left out.
+    /// Index of the memory whose update rate was left out of the fit.
     pub memory: usize,
-    /// Rules of the best fit to the other rates.
+    /// Rules of the best fit to the other two rates.
     pub rules: Rules,
-    /// Hall and path of this fit.
+    /// Hall and path of the best fit to the other two rates.
     pub situation: Situation,
-    /// Side of a cell and rates of this fit.
+    /// Cell side and update rates of the best fit to the other two rates.
     pub trial: Trial,
-    /// Relative error of the predicted rate, in percent.
+    /// Relative error of the predicted update rate, in percent.
     pub error_percent: f64,
 }
 
@@ -154,17 +155,17 @@ pub struct LeftOutRate {
 pub struct Interpretations {
     /// Sets of rules, in ascending order of their mean error.
     pub ranked: Vec<RankedRules>,
-    /// Prediction of each of the three rates. Rules, hall and path are chosen by the other two rates.
+    /// Predictions of each of the three update rates. Rules, hall and path are chosen by the other two rates.
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest side of a cell to try, in metres. Each further side is [`STEP`] times the previous one.
+/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous one.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
 
 impl Tried {
-    /// Tries all sides, and then four more near the best one.
+    /// Tries all cell sides, and then four more near the best one.
     ///
     /// # Errors
     ///
@@ -190,18 +191,19 @@ impl Tried {
     }
 }
 
-/// Returns the compared memories except one.
+/// Returns the indices of all compared memories except `memory`.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error of some memories. The first one wins a tie.
+/// Returns the trial with the smallest error over the given memories. If several are equal, returns the first one.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }
 
 impl Interpretations {
-    /// Runs all rules in all situations. Calls `finished` with the number of runs done and the total.
+    /// Simulates all sets of rules in all halls and on all paths. Calls `finished` with the number of finished runs and
+    /// the number of all runs.
     ///
     /// # Errors
     ///
@@ -231,7 +233,8 @@ impl Interpretations {
 
     /// Returns the rules of this project with their rank, counted from 1.
     ///
-    /// The rank counts only rules that have a cascade if and only if the rules of this project have one.
+    /// With a *cascade*, an update of a memory makes all faster memories due. The rank is among the rules that agree
+    /// with this project's rules in having or lacking a cascade.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
@@ -248,11 +251,12 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
     Some(LeftOutRate { memory, rules, situation, trial, error_percent: 100.0 * trial.miss(memory) })
 }
 
-/// Angle of a pixel of the display in degrees, mean over a line.
+/// Angle of a pixel of the display in degrees, averaged over a line of pixels.
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold and its consequences for a fixed product of threshold and side of a cell, which fits table 1.
+/// A threshold of the image error, with the cell side and the tears that follow. The product of threshold and cell side
+/// is fixed, because it fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold as text, in pixels of the display or texels of an ideal face.
@@ -261,14 +265,14 @@ pub struct ThresholdRow {
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear if updates are shown as soon as they are due, in pixels of the display.
+    /// Widest tear if each update is shown as soon as it is due, in pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear if the slower memory is late by one frame of walking, in pixels of the display.
+    /// Widest tear if the update of the slower memory is shown one frame of walking too late, in pixels of the display.
     pub frame_late_px: f64,
 }
 
-/// Returns thresholds in pixels and texels with their consequences. `fitted_cell_m` is the fitted side for the usual
-/// threshold.
+/// Returns several thresholds, given in pixels or texels, with their consequences. `fitted_cell_m` is the cell side
+/// that fits table 1 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

@@ -1,4 +1,4 @@
-//! A straight edge viewed through a lens, to test the lens correction.
+//! A straight edge seen through a lens, to test the lens correction.
 
 use crate::error::ExperimentError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
@@ -7,7 +7,8 @@ use glam::DVec3;
 
 /// Returns the bend of an upright edge on the screen and as seen through the lens, in pixels of the picture's middle.
 ///
-/// The edge lies 20 degrees to the right. The bend is the largest distance from the straight chord.
+/// The edge lies 20 degrees to the right. The bend is the largest distance of the edge from the straight line between
+/// its ends.
 ///
 /// # Errors
 ///

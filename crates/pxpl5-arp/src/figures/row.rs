@@ -1,4 +1,4 @@
-//! A row of the comparison: published number, simulated number and how they were obtained.
+//! A row of the comparison: published number, simulated number, and how the simulated number was obtained.
 
 use serde::Serialize;
 
@@ -10,9 +10,11 @@ pub enum Standing {
     Checked,
     /// Simulated with a parameter that was chosen so that this row agrees.
     Fitted,
-    /// Depends on facts that the papers do not print. The interval over all interpretations is compared.
+    /// Depends on facts that the papers do not print. The published number is compared with the interval over all
+    /// interpretations.
     Interpretation,
-    /// The papers do not print the conditions. The number cannot be reproduced, and only its shape is checked.
+    /// Cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or table is
+    /// checked.
     Shape,
 }
 
@@ -45,7 +47,7 @@ pub struct Row {
     /// Simulated number.
     pub ours: f64,
     pub standing: Standing,
-    /// True if the simulated number agrees to 1 percent, or if its shape agrees where the number cannot be reproduced.
+    /// True if the simulated number agrees to 1 percent. If the number cannot be reproduced, true if its shape agrees.
     pub is_met: bool,
 }
 
@@ -70,7 +72,7 @@ impl Row {
         Self { is_met, ..Self::number(id, statement, unit, both, Standing::Checked) }
     }
 
-    /// Returns the row with the name of its experiment.
+    /// Returns the row with the name of the experiment that it belongs to.
     #[must_use]
     pub fn of(self, experiment: &'static str) -> Self {
         Self { experiment, ..self }
@@ -82,10 +84,10 @@ impl Row {
         self.published.is_normal().then(|| 100.0 * (self.ours / self.published - 1.0))
     }
 
-    /// Returns the verdict: `met`, `within`, `shape` or `missed`.
+    /// Returns the verdict on the row: `met`, `within`, `shape` or `missed`.
     ///
-    /// `within` means that the interval of all interpretations contains the number. `shape` means that the number
-    /// cannot be reproduced but has the printed shape.
+    /// `within` means that the published number lies in the interval of all interpretations. `shape` means that the
+    /// number cannot be reproduced, but the shape of its curve or table agrees with the print.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.is_met, self.standing) {
@@ -96,7 +98,7 @@ impl Row {
         }
     }
 
-    /// Returns the known cause of a miss.
+    /// Returns the known cause for which the simulated number misses the published one.
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {

@@ -1,4 +1,4 @@
-//! All rows of the comparison, by experiment.
+//! All rows of the comparison between published and simulated numbers, by experiment.
 
 use super::definitions::SEGMENTS;
 use super::experiments::{Experiments, Fit};
@@ -7,7 +7,7 @@ use super::interpretations::PIXEL_DEG;
 use super::row::{Row, Standing};
 use priority_rendering::saved_percent;
 
-/// Returns the rows of E1 to E9, except rows of E1 that need a machine.
+/// Returns the rows of the experiments E1 to E9, except the rows of E1 that need a simulated machine.
 ///
 /// Numbers that follow from printed numbers alone are in [`definitions`](super::definitions()).
 #[must_use]
@@ -37,7 +37,8 @@ fn composition(all: &Experiments) -> Vec<Row> {
     vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Standing::Checked)]
 }
 
-/// Compares A8, "about ten times the distance", for spheres and the distance of the nearest point.
+/// Compares the paper's statement A8, "about ten times the distance", with the limits for spheres, measured to their
+/// nearest point.
 fn sizes(all: &Experiments) -> Vec<Row> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];

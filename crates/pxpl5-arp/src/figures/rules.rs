@@ -3,21 +3,22 @@
 use priority_rendering::PriorityTiming;
 use serde::Serialize;
 
-/// One choice of the rules that the paper does not print.
+/// One set of answers to the questions about priority rendering that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rules {
-    /// Number of rings of cells around the home cell in memory 0.
+    /// Number of rings of cells around the user's cell in memory 0.
     pub inner_rings: u64,
-    /// Factor by which the rings of a memory exceed those of the next faster memory.
+    /// Ratio of the number of rings in a memory to that in the next faster memory.
     pub ring_growth: u64,
-    /// True if distances are measured to occupied cells, false if to the border of a block of cells.
+    /// True if distances are measured to cells that hold segments. False if distances are measured to the border of a
+    /// block of cells.
     pub to_held_cells: bool,
-    /// True if an update of a memory makes all faster memories due.
+    /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,
 }
 
 impl Rules {
-    /// The rules of this project.
+    /// The rules that this project uses by default.
     pub const USUAL: Self = Self {
         inner_rings: PriorityTiming::PAPERS.inner_rings,
         ring_growth: PriorityTiming::PAPERS.ring_growth,
@@ -25,7 +26,7 @@ impl Rules {
         has_cascade: false,
     };
 
-    /// Returns all combinations of rules.
+    /// Returns all sets of rules that are compared.
     ///
     /// Rings of equal width are combined with 0, 1 or 2 inner rings, and doubling rings with 1 inner ring.
     #[must_use]
@@ -42,7 +43,7 @@ impl Rules {
         rules.collect()
     }
 
-    /// Returns the text used in tables.
+    /// Returns the rules as text for tables.
     #[must_use]
     pub fn text(&self) -> String {
         let rings = if self.ring_growth == 1 { "equal rings" } else { "rings that double" };
@@ -51,7 +52,7 @@ impl Rules {
         format!("q = {}, {rings}, {distance}, {cascade}", self.inner_rings)
     }
 
-    /// Returns the parameters of the policy with these rules and cells of side `cell_m`, in metres.
+    /// Returns the parameters of the policy with these rules. `cell_m` is the side of a cell in metres.
     #[must_use]
     pub fn numbers(&self, cell_m: f64) -> PriorityTiming {
         PriorityTiming {

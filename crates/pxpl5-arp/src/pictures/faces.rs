@@ -1,4 +1,4 @@
-//! The six faces as an unfolded cube.
+//! Picture of the six faces as an unfolded cube.
 
 use crate::look::rgb;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
@@ -14,7 +14,7 @@ const PLACES: [(CubeFace, u32, u32); 6] = [
     (CubeFace::NegY, 1, 2),
 ];
 
-/// Returns the six faces as a cross of 4 by 3 faces, with empty texels in the colour `empty`.
+/// Returns the six faces unfolded into a cross, in a grid of 4 by 3 faces. Empty texels have the colour `empty`.
 #[must_use]
 pub fn cross(faces: &FaceSet, empty: u32) -> RgbImage {
     let size = faces.texels();

@@ -1,4 +1,5 @@
-//! Pictures of a walk: unfolded faces, views, winning memories, tears, errors, a plan of cells, and updates.
+//! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears, errors, a plan of
+//! cells, and updates.
 
 mod colours;
 mod faces;
@@ -26,7 +27,7 @@ use image::RgbImage;
 use priority_rendering::Falloff;
 use tracking::motion::Walk;
 
-/// A picture and the name of its file without extension.
+/// A picture, and the name of its file without extension.
 #[derive(Clone, Debug)]
 pub enum Picture {
     /// Pixels, written as PNG.
@@ -35,19 +36,19 @@ pub enum Picture {
     Drawing(String, String),
 }
 
-/// Number of frames of the depicted walk.
+/// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
-/// For each experiment, the figures of the paper that it redraws, and the names of our pictures.
+/// For each experiment: its name, the figures of the paper that it redraws, and the names of our pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),
     ("E7", "13 and 15 to 17", &["tears", "unsegmented", "warped", "difference"]),
     ("E10", "5, 6 and 8 to 11", &["cells", "eye-flat", "objects", "cells-seen", "cuts"]),
 ];
 
-/// Returns all pictures of the torn and the warped walk.
+/// Returns all pictures of the walk with tears and of the walk with warping.
 ///
-/// Frame and direction are chosen so that a tear shows much of the scene behind it.
+/// The chosen frame and direction show a tear that uncovers much of the scene behind it.
 ///
 /// # Errors
 ///
@@ -63,11 +64,11 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
 
 /// Returns all pictures of a walk at a speed of `m_per_s`.
 ///
-/// The picture `eye` is seen through the display's lens. `eye-flat` and `cuts` show the view without a lens, and are
-/// omitted if the picture is too wide for a plane. The other pictures are flat where possible.
+/// The picture `eye` is the view through the display's lens. `eye-flat` and `cuts` show the view without a lens, and
+/// are omitted if the view is too wide for a plane. The other pictures are flat where possible.
 ///
-/// The chosen frame and direction show most of the scene behind the widest tear. If no memories meet in a cut, the view
-/// is the one along the path at the end of the walk.
+/// The chosen frame and direction uncover most of the scene behind the widest tear. If no memories meet in a cut, the
+/// view is along the path at the end of the walk.
 ///
 /// # Errors
 ///
@@ -111,17 +112,18 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// Distance along the path at which the eyes look, in metres. Same as in [`Walk`].
+/// Distance along the path from the eye to the point that it looks at, in metres. Same as in [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
-/// Returns the orientation of a head that looks along the path, `way_m` metres from its start.
+/// Returns the orientation of a head that looks along the path. The head is `way_m` metres from the start of the path.
 pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
     looking_at(path.place(way_m), path.place(way_m + AHEAD_M))
 }
 
-/// Returns pictures of one frame: faces, views, winning memories and errors.
+/// Returns pictures of one frame: cube faces, views, the memory shown at each pixel, and errors.
 ///
-/// The faces include a reference memory that holds the whole scene. Views are drawn with and without the lens.
+/// The faces include those of a reference memory, which holds the whole scene. Views are drawn with and without the
+/// lens.
 fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, ExperimentError> {
     let faces = Faces::of(simulation)?;
     let mut pictures: Vec<Picture> = Vec::new();
@@ -146,7 +148,7 @@ fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<V
     Ok(pictures)
 }
 
-/// Returns the view with one colour per object, and the view with one colour per cell.
+/// Returns two views: one with a colour per object, and one with a colour per cell.
 fn tinted(
     mut world: World,
     settings: &Settings,
@@ -163,10 +165,10 @@ fn tinted(
     Ok(pictures)
 }
 
-/// Background colour behind tears.
+/// Background colour that is visible through tears.
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Largest number of frames to try, and smallest distance between them.
+/// Largest number of frames to try, and smallest number of frames between two tried frames.
 const TRIED: u64 = 63;
 const EVERY: u64 = 29;
 
@@ -201,7 +203,7 @@ fn best_tear_view(
     Ok((best.2 > 0).then_some((best.0, best.1)))
 }
 
-/// Returns the position of the widest tear, not counting floor and ceiling.
+/// Returns the position of the widest tear, except tears in the floor and the ceiling.
 fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     let is_upright =
         |segment: usize| !["floor", "ceiling"].contains(&world.objects[world.segments[segment].object].name.as_str());
@@ -211,7 +213,8 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     Some(world.vertices[vertex as usize])
 }
 
-/// Returns one frame torn, warped and uncut, against white, and the difference of the torn and the warped picture.
+/// Returns views of one frame against a white background: with tears, warped, and without cuts. A last picture is the
+/// difference of the first two.
 fn gaps(
     world: &World,
     torn: &Settings,
@@ -233,7 +236,7 @@ fn gaps(
     Ok(pictures)
 }
 
-/// Runs a walk over a range of frames.
+/// Runs a walk over a range of frames and returns its final state.
 fn shown<'a>(
     world: &'a World,
     settings: &Settings,

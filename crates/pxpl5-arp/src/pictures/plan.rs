@@ -1,4 +1,4 @@
-//! Drawings of the cells from above, and of the updates of each memory.
+//! Drawings of the cells seen from above, and of the frames in which each memory was updated.
 
 use super::colours::MEMORY_COLOURS;
 use crate::simulation::{FrameOutcome, Simulation};
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use tracking::motion::Walk;
 
-/// Pixels per metre.
+/// Pixels of the drawing per metre of the hall.
 const SCALE: f64 = 14.0;
 const MARGIN: f64 = 30.0;
 
@@ -48,8 +48,8 @@ fn head(width: f64, height: f64) -> String {
     )
 }
 
-/// Draws the cells from above, coloured by memory, with partitions, path, eye and home cell. The direction -z is at the
-/// top.
+/// Draws the cells seen from above, coloured by memory, with partitions, path, eye and the user's cell. The direction
+/// -z is at the top.
 #[must_use]
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {
     let side = simulation.settings().numbers.cell_m;
@@ -110,7 +110,7 @@ fn legend(svg: &mut String, memory: usize, top: f64) {
     );
 }
 
-/// Draws the edges of upright triangles from above: walls and partitions.
+/// Draws the edges of upright triangles, seen from above. They are the walls and partitions.
 fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
         // Only upright triangles form walls.
@@ -130,8 +130,8 @@ fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     }
 }
 
-/// Draws a row per memory with a mark for each frame in which the memory was shown or missed, and for new assignments
-/// of cells.
+/// Draws a row per memory. A rectangle marks each frame in which the memory showed an update or missed the retrace.
+/// Other rectangles mark new assignments of cells.
 #[must_use]
 pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     let memories = tally.memories.len();
@@ -173,7 +173,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     svg
 }
 
-/// Draws the mark of a memory in one frame.
+/// Draws the rectangle that stands for the update of a memory in one frame.
 fn mark(svg: &mut String, outcome: &FrameOutcome, memory: usize, x: f64) {
     let top = 22.0 + 34.0 * memory as f64;
     let place = format!("x=\"{x:.0}\" y=\"{top:.0}\" width=\"6\" height=\"24\"");

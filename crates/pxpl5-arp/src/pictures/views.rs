@@ -1,4 +1,4 @@
-//! Views of the eye, and their errors.
+//! Views that the eye sees, and pictures of their errors.
 
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
@@ -10,7 +10,7 @@ use cube_faces::CubeView;
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 
-/// A view of the faces of all memories.
+/// A view of the cube faces of all memories.
 #[derive(Clone, Debug)]
 pub struct Views<'a> {
     /// Faces of all memories.
@@ -21,7 +21,8 @@ pub struct Views<'a> {
     pub lens: Lens,
 }
 
-/// Returns the lens for pictures without a lens: a flat one, or the display's own if the view is too wide for a plane.
+/// Returns the lens for pictures without lens distortion: a flat lens, or the display's own lens if the view is too
+/// wide for a plane.
 pub(crate) fn without_lens(display: &ArpConfig) -> Lens {
     if Lens::Flat.check(&display.picture()).is_ok() { Lens::Flat } else { display.lens.clone() }
 }
@@ -36,7 +37,7 @@ impl Views<'_> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
-    /// Returns the view, tinted by the colour of the memory that won each pixel.
+    /// Returns the view, tinted by the colour of the memory that is shown at each pixel.
     ///
     /// # Errors
     ///
@@ -53,10 +54,10 @@ impl Views<'_> {
         Ok(seen)
     }
 
-    /// Returns a picture of the error of each pixel that results from the memory's eye position.
+    /// Returns a picture of the error that each pixel has because its memory was drawn from an older eye position.
     ///
-    /// The unit is a pixel of the picture's middle. Black means no error, and white means two pixels or more. A scale
-    /// is drawn below the picture.
+    /// Black means no error, and white means two pixels or more, in pixels of the picture's middle. A scale is drawn
+    /// below the picture.
     ///
     /// # Errors
     ///
@@ -76,7 +77,7 @@ impl Views<'_> {
         }))
     }
 
-    /// Returns the angle between the displayed and the correct direction of a ray's content, in radians.
+    /// Returns the angle between the displayed and the correct direction of the point that a ray hits, in radians.
     ///
     /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {
@@ -97,7 +98,7 @@ fn pixels_per_radian(lens: &Lens, screen: &Picture) -> f64 {
     1.0 / angle(view(middle.saturating_sub(1)), view(middle)).max(f64::MIN_POSITIVE)
 }
 
-/// Returns the colour of an error: black, red, yellow, then white at two pixels. Marks of the scale are blue.
+/// Returns the colour of an error in pixels: black, red, yellow, then white at two pixels. Marks of the scale are blue.
 fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
     if is_mark {
         return Rgb([0, 128, 255]);
@@ -106,7 +107,7 @@ fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
     Rgb([0.0, 1.0, 2.0].map(|from: f64| ((share - from).clamp(0.0, 1.0) * 255.0) as u8))
 }
 
-/// Returns half the difference of two pictures, centred at grey.
+/// Returns half the difference of two pictures. Equal pixels become grey.
 #[must_use]
 pub fn difference(first: &RgbImage, second: &RgbImage) -> RgbImage {
     RgbImage::from_fn(first.width(), first.height(), |x, y| {

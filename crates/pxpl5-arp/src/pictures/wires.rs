@@ -1,4 +1,4 @@
-//! Wireframe of the cuts that the segmentation makes, as the eye sees them.
+//! Wireframe drawing of the cuts that the segmentation makes, as the eye sees them.
 
 use crate::world::World;
 use address_recalculation::Picture;
@@ -9,9 +9,9 @@ use std::fmt::Write as _;
 /// Near plane in metres. Edges nearer to the eye are clipped.
 const NEAR_M: f64 = 0.05;
 
-/// Draws the edges of all triangles without hidden-line removal.
+/// Draws the edges of all triangles. Edges behind a surface are also drawn.
 ///
-/// Edges of the scene are grey. Edges cut by the borders of cells with side `side_m` are red.
+/// Edges of the scene are grey. Edges that result from cuts at the borders of cells with side `side_m` are red.
 #[must_use]
 pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &Picture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);
@@ -58,8 +58,8 @@ fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     edges
 }
 
-/// Returns true if both coordinates are exactly the same border. Cuts compute coordinates so that this comparison is
-/// exact.
+/// Returns true if both coordinates lie exactly on the same border of cells. Cuts compute coordinates so that this
+/// comparison is exact.
 fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     let border = (p / side_m).round() * side_m;
     p == border && q == border

@@ -1,4 +1,4 @@
-//! Figures that are counted or measured in views of the display and in drawn volumes.
+//! Figures of the paper that are counted in views of the display, or measured in drawn volumes.
 
 use super::printed::{TRIANGLE, display, recording, row};
 use crate::error::VolumeError;
@@ -20,11 +20,11 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
     Ok(rows)
 }
 
-/// Width and height of the small slices on which passes are counted, pixels. At the rim such a slice is thicker than
-/// the taper of half a pixel on each side.
+/// Width and height in pixels of the small slices on which passes are counted. At the rim, the slab of such a slice is
+/// thicker than the taper of half a pixel on each side.
 const SMALL: u64 = 192;
 
-/// Returns P5: the draws of one triangle per slice, without bins.
+/// Returns figure P5: the number of draws of one triangle per slice, without bins.
 fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let published = [
         (SliceClip::UserPlanes, 2.0, "draws of a triangle for a slice with user clip planes"),
@@ -54,7 +54,8 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     Ok(context.present())
 }
 
-/// Returns D8, P9 and D7: queries and clears of a volume with and without batches, and the number of words in a slice.
+/// Returns figures D8, P9 and D7: queries and clears of a volume with and without batches, and the number of words in a
+/// slice.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
@@ -77,7 +78,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
     ])
 }
 
-/// Returns D1, D2 and D5 from the matrices of the views and the instants of the strobes.
+/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes.
 fn planes(views: &[SliceView]) -> Vec<Figure> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
@@ -110,15 +111,15 @@ fn planes(views: &[SliceView]) -> Vec<Figure> {
     ]
 }
 
-/// Returns the plane of a slice as the bits of its normal, the same for both directions of the normal.
+/// Returns the plane of a slice as the bits of its normal. Both directions of the normal give the same bits.
 fn plane(view: &SliceView) -> [u64; 2] {
     let normal = view.view.transpose().z_axis;
     let sign = if normal.x < 0.0 || (normal.x == 0.0 && normal.z < 0.0) { -1.0 } else { 1.0 };
     [normal.x, normal.z].map(|coordinate| (sign * coordinate + 0.0).to_bits())
 }
 
-/// Returns D3 and D4 by bisection: the half thickness of slice 0 at the rim, and the radius at which it is half a
-/// pixel.
+/// Returns figures D3 and D4 by bisection. D3 is half the thickness of slice 0 at the rim. D4 is the radius at which
+/// half the thickness is half a pixel.
 fn slab(views: &[SliceView]) -> Vec<Figure> {
     let radius = PerspectaConfig::PAPERS.width as f64 / 2.0;
     let has = |u: f64, s: f64| views[0].volume.contains([u, 0.0, s], u, s);
@@ -130,7 +131,7 @@ fn slab(views: &[SliceView]) -> Vec<Figure> {
     ]
 }
 
-/// Returns the position between two numbers at which a condition ceases to hold.
+/// Returns the number between `low` and `high` at which a condition ceases to hold, by bisection.
 fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
@@ -139,11 +140,12 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of steps of a walk around the axis. The walk starts half a step off, so no step lies in a bin plane.
+/// Number of steps on a circle around the axis. The first step is half a step off, so no step lies in a plane between
+/// bins.
 const STEPS: u32 = 3_600;
 
-/// Returns P14: for each region, the number of planes that bound it. A plane counts if its sign changes where a walk
-/// around the axis enters or leaves the region, and if the layout lists it as a bound.
+/// Returns figure P14: for each region, the number of planes that bound it. Two conditions make a plane a bound. Its
+/// sign changes where a circle around the axis enters or leaves the region, and the layout lists it as a bound.
 fn bounds() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let code = |step: u32| {

@@ -1,4 +1,4 @@
-//! The figures as a Markdown document.
+//! The figures of the SpatialGL paper and the results of the model as a Markdown document.
 
 use super::row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
 use super::shown::Shown;
@@ -6,8 +6,8 @@ use crate::settings::VolumeSettings;
 use parameters::Entry;
 use std::fmt::Write as _;
 
-/// Returns the text of docs/volumetric.md: every figure, the definitions, statements without numbers, the scenes, and
-/// our own numbers with their ranges.
+/// Returns the text of docs/volumetric.md. It has every figure, the definitions, the statements without numbers, the
+/// scenes, and our own numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -67,7 +67,7 @@ fn standing(row: &FigureRow) -> String {
     if row.scene.is_some() { format!("{standing}, measured") } else { standing.to_string() }
 }
 
-/// Returns the value, with its interval if the paper says "over", "about" or "most".
+/// Returns the expected value as text. If the paper says "over", "about" or "most", the text includes the interval.
 fn expected([low, high]: [f64; 2], value: f64) -> String {
     let is_wide = high - low > 0.02 * value.abs().max(1e-12) + 1e-9;
     if is_wide { format!("{} ({} to {})", number(value), number(low), number(high)) } else { number(value) }
@@ -95,7 +95,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Returns the known cause for which the model misses a figure.
+/// Returns the known cause for which the model misses the figure with this identifier.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
@@ -177,7 +177,7 @@ fn pictures(text: &mut String) {
     );
 }
 
-/// Writes the numbers that the paper leaves open, with their ranges.
+/// Writes our values of the numbers that the paper does not give, with their ranges.
 fn numbers(text: &mut String) {
     let _ = write!(
         text,

@@ -1,7 +1,7 @@
-//! Figures 4 to 12 of the paper, drawn again. Every pixel of the drawings is computed by the model.
+//! Figures 4 to 12 of the paper, drawn again. The model computes every pixel of the drawings.
 //!
-//! Plans are seen from above, with +x to the right and +z up. The display of the plans has few slices, so that a single
-//! slice is visible.
+//! Some drawings are plans: the display seen from above, with +x to the right and +z up. The display of the plans has
+//! few slices, so that a single slice is visible.
 
 use crate::choices::{ClipKind, ProjectionKind};
 use crate::error::VolumeError;
@@ -20,7 +20,7 @@ use spatialgl::{
 pub struct Drawing {
     /// Number of the figure in the paper.
     pub number: u32,
-    /// Subject of the paper's caption, and meaning of the pixels.
+    /// Subject of the figure in the paper's caption, and meaning of the pixels.
     pub about: &'static str,
     /// The drawing itself.
     pub picture: RgbImage,
@@ -29,13 +29,13 @@ pub struct Drawing {
 /// Width and height of each drawing, pixels.
 const SIDE: u32 = 256;
 
-/// Number of slices per turn of the display in the plans.
+/// Number of slices per turn of the display in the plans (views from above).
 const FEW_SLICES: u64 = 12;
 
 const DARK: Rgb<u8> = Rgb([16, 16, 24]);
 const LIT: Rgb<u8> = Rgb([240, 200, 80]);
 
-/// Distinct colours for slices and regions.
+/// Distinct colours for neighbouring slices and regions.
 const COLOURS: [[u8; 3]; 8] = [
     [230, 159, 0],
     [86, 180, 233],
@@ -47,7 +47,7 @@ const COLOURS: [[u8; 3]; 8] = [
     [150, 150, 150],
 ];
 
-/// Returns all nine drawings. The tile query uses `scene`.
+/// Returns all nine drawings. The drawing of the tile query shows `scene`.
 ///
 /// # Errors
 ///
@@ -95,7 +95,7 @@ fn framed(picture: &RgbImage) -> RgbImage {
     })
 }
 
-/// Returns a display of 12 slices with a radius of 64 px, offsets of 8 px and the corresponding bias of 64 px^2.
+/// Returns a display of 12 slices with a radius of 64 px, a clip offset of 8 px and the corresponding bias of 64 px^2.
 fn few(clip: ClipKind) -> Result<SweptDisplay, VolumeError> {
     let mut settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
     settings.display.slices = FEW_SLICES;
@@ -106,14 +106,15 @@ fn few(clip: ClipKind) -> Result<SweptDisplay, VolumeError> {
     settings.swept_display()
 }
 
-/// Returns the world position of a pixel of the plan.
+/// Returns the world position of a pixel of the plan (view from above).
 fn place(x: u32, y: u32) -> [f64; 3] {
     let half = f64::from(SIDE) / 2.0;
     let scale = 80.0 / half;
     [(f64::from(x) + 0.5 - half) * scale, 0.0, (half - f64::from(y) - 0.5) * scale]
 }
 
-/// Draws the volume of slice 1 bright and its neighbours darker. Overlaps of dilated volumes are white.
+/// Draws the volume of slice 1, seen from above, bright and the volumes of its neighbours darker. Overlaps of enlarged
+/// volumes are white.
 fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     let display = few(clip)?;
     let views = display.views();
@@ -132,8 +133,8 @@ fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     }))
 }
 
-/// Draws red where the distance from the first plane is positive, and green where the second is. The + lobe is yellow,
-/// the - lobe dark.
+/// Draws points red where the distance from the first plane is positive, and green where the distance from the second
+/// plane is positive. The lobe with two positive distances is yellow, and the lobe with two negative distances dark.
 fn orientation() -> Result<RgbImage, VolumeError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {
@@ -146,8 +147,8 @@ fn orientation() -> Result<RgbImage, VolumeError> {
     }))
 }
 
-/// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. From slice to slice, fewer pixels are within the exact
-/// volume.
+/// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. In each further slice, the exact volume contains fewer
+/// pixels.
 fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
     let wall = [[-380.0, -64.0, 20.0], [380.0, -64.0, 20.0], [380.0, 64.0, 20.0], [-380.0, 64.0, 20.0]];
     let mut columns = Vec::new();
@@ -186,8 +187,8 @@ fn bin_plan() -> RgbImage {
     })
 }
 
-/// Draws a row for each sector. A triangle over sectors 0, 1 and 7 (T5 of the specification) marks the sectors that it
-/// touches.
+/// Draws a row for each sector of the disc. A triangle over sectors 0, 1 and 7 (T5 of the specification) marks the
+/// sectors that it touches.
 fn outcodes() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     let triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];

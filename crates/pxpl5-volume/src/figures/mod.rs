@@ -23,8 +23,8 @@ use row::order;
 use spatialgl::Workers;
 use std::sync::Arc;
 
-/// Measures all figures. P17 and the draws with bins are measured on each of the scenes. `finished` is called with the
-/// number of finished and of all steps.
+/// Measures all figures. P17 and the number of draws with bins are measured on each of the scenes. `finished` is called
+/// with the number of finished steps and the number of all steps.
 ///
 /// # Errors
 ///

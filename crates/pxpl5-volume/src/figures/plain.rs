@@ -1,10 +1,10 @@
-//! The settings for measured figures.
+//! The settings with which figures are measured.
 
 use crate::choices::ProjectionKind;
 use crate::settings::VolumeSettings;
 
-/// Returns the paper's settings with its hyperbolic clip and an orthographic projection, so that jitter has no
-/// influence.
+/// Returns the paper's settings, with the hyperbolic clip and an orthographic projection. This projection has no
+/// jitter.
 pub(super) fn plain() -> VolumeSettings {
     VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() }
 }

@@ -1,4 +1,4 @@
-//! Figures that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
 use parameters::Standing;
@@ -13,11 +13,11 @@ use spatialgl::{
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
-/// A triangle that stands upright beside the axis, pixels: the first triangle of the specification.
+/// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
-/// The slice in which the triangle is examined. The exact volume contains 209 pixels of it (derived: the area of the
-/// intersection).
+/// Index of the slice in which [`TRIANGLE`] is examined. The exact volume of this slice contains 209 pixels of the
+/// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
 /// Returns all figures that need single slices.
@@ -63,7 +63,8 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Vo
     Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
 }
 
-/// Returns P2: a walk around the axis meets each plane on both sides, and points on the axis are in both planes.
+/// Returns figure P2. Points on a circle around the axis meet each plane on both sides, and points on the axis are in
+/// both planes.
 fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let view = &display.views()[7];
     let steps = 100_000;
@@ -81,8 +82,8 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     ]
 }
 
-/// Returns true if the closed volume of a slice contains a point of the axis, but not a point beside the axis off the
-/// slice.
+/// Returns true if the closed volume of a slice contains a point of the axis. It must not contain a point beside the
+/// axis and off the slice.
 fn has_axis(view: &SliceView) -> bool {
     let SliceVolume::Wedge(planes, _) = view.volume else { return false };
     let closed = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::Closed));
@@ -90,7 +91,7 @@ fn has_axis(view: &SliceView) -> bool {
     closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
 }
 
-/// Returns points of a grid, off the axis. Many of them lie in boundary planes.
+/// Returns points of a grid beside the axis. Many of them lie in boundary planes.
 fn grid() -> impl Iterator<Item = [f64; 3]> {
     let side = -60..=60i32;
     let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));
@@ -101,8 +102,8 @@ fn percent(total: usize, agreeing: usize) -> f64 {
     100.0 * agreeing as f64 / total as f64
 }
 
-/// Returns P3 by the codes of bins. P4 compares the printed product with the clip, for the normals of figure 5 left and
-/// right.
+/// Returns figures P3 and P4. P3 compares the codes of bins. P4 compares the printed product with the clip, for the
+/// normals of figure 5 left and right.
 fn signs() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
@@ -122,9 +123,9 @@ fn signs() -> Vec<Figure> {
     ]
 }
 
-/// Returns true if slice 50 agrees with the printed rule at a point. The slice must contain the point exactly if the
-/// product of the signed distances is positive. With `orientation` -1 the second normal is reversed, and the product
-/// must be negative.
+/// Returns true if slice 50 agrees with the printed rule at a point. By the rule, the slice contains the point if and
+/// only if the product of the signed distances is positive. With `orientation` -1 the second normal is reversed, and
+/// the product must be negative.
 fn agrees(p: [f64; 3], orientation: f64) -> bool {
     let (sin, cos) = spatialgl::sin_cos_of_turn(99, 792);
     let (next_sin, next_cos) = spatialgl::sin_cos_of_turn(101, 792);
@@ -136,14 +137,15 @@ fn agrees(p: [f64; 3], orientation: f64) -> bool {
     volume.contains(p, 0.0, 0.0) == printed
 }
 
-/// Returns P7: the bits of each pixel that the projector can distinguish, from a word of eight white pixels.
+/// Returns figure P7: the number of bits per pixel that the projector can distinguish, from a word of eight white
+/// pixels.
 fn pixels() -> Figure {
     let white = packed_word(0xFF, 0xFF, 0xFF);
     let projector = (0..8).map(|pixel| pixel_of_word(white, pixel).count_ones()).sum::<u32>();
     row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0)
 }
 
-/// Returns P15: the marked pixels of a slice on which something is drawn, and of a slice on which nothing is drawn.
+/// Returns figure P15: the pixels marked in the stencil, for a slice with drawn pixels and for an empty slice.
 fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
     let marked = |slice: usize| frame.colours.as_ref().map_or(0, |colours| colours[slice].len()) as f64;
     let queries = Tiling::PAPER.grid(frame.planes.size()).tiles();
@@ -166,7 +168,8 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
     ]
 }
 
-/// Returns P19: the largest shift by a slice's shear at the face of its slab, and the number of distinct eyes.
+/// Returns figure P19: the largest shift of a point by the shear at the face of a slice's slab, and the number of
+/// distinct eyes.
 fn jitter() -> Result<Vec<Figure>, VolumeError> {
     let clip = SliceClip::Hyperbolic(0.25);
     let wedge = HalfWedge::new(396, 384.0);
@@ -194,7 +197,7 @@ fn jitter() -> Result<Vec<Figure>, VolumeError> {
     ])
 }
 
-/// Returns D10 and D11: the mean number of planes that contain a point, over points spread evenly over the disc.
+/// Returns figures D10 and D11: the mean number of planes that contain a point, for points spread evenly over the disc.
 fn means() -> Result<Vec<Figure>, VolumeError> {
     let prism = mean_planes(SliceClip::Prism)?;
     let hyperbola = mean_planes(SliceClip::Hyperbolic(0.25))?;

@@ -15,13 +15,14 @@ pub struct FigureRow {
     pub source: &'static str,
     /// Scene that was drawn for the figure, or `None` if no scene was needed.
     pub scene: Option<String>,
-    /// Error of the model, (computed - published) / published, percent.
+    /// Relative error of the model, (computed - published) / published, in percent.
     pub error_percent: f64,
     /// True if the model agrees with the figure.
     pub is_met: bool,
 }
 
-/// A definition with its section of the paper. No run of the model can change such a number.
+/// A definition, with the section of the paper that prints it. No run of the model can change the value of a
+/// definition.
 #[derive(Clone, Debug, Serialize)]
 pub struct DefinitionRow {
     /// Definition with its value.
@@ -46,7 +47,7 @@ pub struct Figures {
     pub figures: Vec<FigureRow>,
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<DefinitionRow>,
-    /// Statements of the paper without numbers.
+    /// Statements of the paper without numbers, each with the measurements that test it.
     pub shown: Vec<Shown>,
     /// Scenes on which figures were measured.
     pub scenes: Vec<MeasuredScene>,
@@ -59,15 +60,16 @@ pub struct MeasuredScene {
     pub scene: String,
     /// Number of triangles in the scene.
     pub triangles: u64,
-    /// Draws with bins as a percentage of the draws without bins.
+    /// Number of primitives drawn with bins, as a percentage of the number without bins.
     pub draws_percent: f64,
-    /// Percentage of queried tiles that are occupied.
+    /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,
-    /// Size of a volume in bytes: unpacked, packed and sent.
+    /// Sizes of a volume in bytes: unpacked, packed, and as sent.
     pub bytes: [u64; 3],
-    /// Time of the model in milliseconds: processor, GPU, bus.
+    /// Modelled times of one volume in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
-    /// Volumes per second of the model: one part after the other, and overlapped.
+    /// Volumes per second of the model if processor, GPU and bus work one after the other, and if they work at the same
+    /// time.
     pub volumes_hz: [f64; 2],
     /// Hash of all bits of the volume.
     pub volume_hash: String,
@@ -98,7 +100,8 @@ impl FigureRow {
     }
 }
 
-/// Returns a sort key: printed figures first, then derived ones, then figures without a number.
+/// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then figures without
+/// a number.
 pub(super) fn order(id: &str) -> (u8, u32) {
     let number = id.get(1..).and_then(|digits| digits.parse().ok());
     match (id.chars().next(), number) {
@@ -108,7 +111,7 @@ pub(super) fn order(id: &str) -> (u8, u32) {
     }
 }
 
-/// Returns the section of the paper that prints a figure.
+/// Returns the section of the paper that prints the figure with this identifier.
 fn source(id: &str) -> &'static str {
     match id {
         "P1" => "SpatialGL Graphics Pipeline; Slice View Volume",

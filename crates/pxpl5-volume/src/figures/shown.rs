@@ -1,4 +1,4 @@
-//! Statements of the paper without numbers, each with measurements that confirm or refute it.
+//! Statements of the paper that contain no numbers. The model confirms or refutes each of them by measurements.
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
@@ -13,18 +13,18 @@ use spatialgl::{
 };
 use std::sync::Arc;
 
-/// A statement of the paper, and the result of the model.
+/// A statement of the paper without numbers, and the measurements that test it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shown {
     /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// Numbers that confirm or refute the statement.
+    /// Measured numbers that confirm or refute the statement.
     pub evidence: String,
     /// True if the numbers confirm the statement.
     pub holds: bool,
 }
 
-/// Tests every statement. Statements that need a scene are tested on the first of the scenes.
+/// Tests all statements. If a statement needs a scene, the test uses the first of `scenes`.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Shown>, VolumeError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
@@ -63,8 +63,8 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// Measures the radius within which no point is accepted if planes have few bits. The derived value is 2^-(bits + 1) /
-/// S.
+/// Measures the radius around the axis within which no point is accepted if planes have few fraction bits. The derived
+/// radius is 2^-(bits + 1) / S.
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
@@ -129,8 +129,8 @@ fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<Comman
     Ok(context.present())
 }
 
-/// Compares the gaps of a sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300 px. Every
-/// slice meets the same facets, so all slices have the same gaps in an orthographic projection.
+/// Compares the gaps in a displayed sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300
+/// px. Every slice intersects equal facets, so all slices have the same gaps in an orthographic projection.
 fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let likeness = |projection| {
         // As many facets around the sphere as slices make the gaps of all slices equal.
@@ -151,7 +151,7 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// Compares the parts of the model's GPU time, and the bus time without packing and tiles.
+/// Compares the parts of the modelled GPU time, and the bus time with that without packing and tiles.
 fn limits(volume: &Volume) -> Shown {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();

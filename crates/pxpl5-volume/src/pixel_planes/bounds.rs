@@ -1,4 +1,5 @@
-//! Volumes per second as a function of the numbers of renderers and graphics processors: the bound of each part alone.
+//! Volumes per second as a function of the numbers of renderers and graphics processors. Each part of the machine gives
+//! an upper bound of this rate.
 
 use super::renderer::RendererWork;
 use super::traffic::SliceTraffic;
@@ -10,7 +11,7 @@ use pxpl5_wire::MAX_MESSAGE_WORDS;
 use serde::Serialize;
 use spatialgl::{Tiling, VolumeFrame};
 
-/// The times that each part needs for a volume if it never waits, milliseconds.
+/// The time that each part of the machine needs for a volume if the part never waits, in milliseconds.
 ///
 /// ```text
 /// renderers   (clocks of clears, triangles and halftones + copies x backing block) / 40 MHz / renderers
@@ -20,39 +21,40 @@ use spatialgl::{Tiling, VolumeFrame};
 /// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
 /// ```
 ///
-/// A slice triangle costs a processor the same as a triangle of a frame (assumed: the six coefficients of the hyperbola
-/// replace depth).
+/// A slice triangle takes a processor as long as a triangle of a frame. It is assumed that the hyperbola's six
+/// coefficients take the time of depth.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SliceBounds {
     /// Work of the renderers for the volume.
     pub work: RendererWork,
-    /// Number of tiles sent. Each tile is sent with its words.
+    /// Number of tiles sent.
     pub tiles: u64,
-    /// Number of words of a tile.
+    /// Number of ring words of a tile.
     pub tile_words: u64,
-    /// Number of regions with at least one tile to send. Each moves to the backing store first, and its renderer waits
-    /// for this move.
+    /// Number of regions with at least one tile to send. Each such region is first copied to the backing store, and its
+    /// renderer waits for this copy.
     pub copies: u64,
 }
 
-/// The bounds for certain numbers of boards.
+/// The time of each part for certain numbers of boards. Each is a lower bound of the time for a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
     /// Number of renderers that share the slices.
     pub renderers: u64,
     /// Number of graphics processors that share the triangles.
     pub processors: u64,
-    /// Bounds in milliseconds: renderers, ring (both directions), the display's port, processors.
+    /// Times in milliseconds: renderers, ring (both directions), the display's port, processors.
     pub ms: [f64; 4],
-    /// Volumes per second if only the slowest part limits the rate.
+    /// Volumes per second if only the slowest part limits this rate.
     pub volumes_hz: f64,
-    /// Slowest part: `renderers`, `ring`, `port` or `processors`. Of equal parts, the first.
+    /// Name of the slowest part: `renderers`, `ring`, `port` or `processors`. If parts are equally slow, it is the
+    /// first of them.
     pub limited_by: &'static str,
 }
 
 impl SliceBounds {
-    /// Computes the bounds of a volume that renderers drew. Occupied tiles are sent for every slice of their batch.
-    /// Without `traffic`, when the tiles cannot be sent, no region is copied.
+    /// Computes the counts of a volume that the renderers have drawn. A tile that is occupied in one slice is sent for
+    /// every slice of its batch. `traffic` is `None` if the tiles cannot be sent, and then no region is copied.
     #[must_use]
     pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling, traffic: Option<&SliceTraffic>) -> Self {
         let tile_words = tiling.grid(frame.planes.size()).words(0);
@@ -61,7 +63,7 @@ impl SliceBounds {
         Self { work, tiles, tile_words, copies: traffic.map_or(0, SliceTraffic::copies) }
     }
 
-    /// Returns the bounds for these numbers of renderers and graphics processors, each 1 or more.
+    /// Returns the times of each part for these numbers of renderers and graphics processors, each 1 or more.
     #[must_use]
     pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
         let clocks = self.work.clocks + self.copies * RendererTiming::PAPERS.backing_block_clocks;
@@ -75,7 +77,8 @@ impl SliceBounds {
         BoundRow { renderers, processors, ms, volumes_hz: 1e3 / ms[slowest], limited_by: names[slowest] }
     }
 
-    /// Returns the bound of the ring. Commands and tiles share its channels, of which renderers may hold six at a time.
+    /// Returns the time that the ring needs for a volume, in milliseconds. Commands and tiles share the ring's
+    /// channels. Transfers to all renderers together can occupy at most six channels.
     fn ring_ms(&self) -> f64 {
         let ring = RingTiming::PAPERS;
         let messages = self.work.command_words.div_ceil(u64::from(MAX_MESSAGE_WORDS)).max(self.work.regions);
@@ -85,12 +88,13 @@ impl SliceBounds {
         alone.max(together)
     }
 
-    /// Returns the bound of the display's port, which receives one message at a time.
+    /// Returns the time that the display's port needs for a volume, in milliseconds. The port receives one message at a
+    /// time.
     fn port_ms(&self) -> f64 {
         milliseconds(self.words_out())
     }
 
-    /// Returns the number of words of all occupied tiles, including the overhead of each message.
+    /// Returns the number of ring words of all occupied tiles, including the overhead of each message.
     fn words_out(&self) -> u64 {
         self.tiles * (self.tile_words + RingTiming::PAPERS.overhead_words)
     }

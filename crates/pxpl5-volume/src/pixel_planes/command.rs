@@ -1,5 +1,5 @@
-//! The command of a slice's triangle: three edges, the hyperbola and three colours, all evaluated by the renderers'
-//! trees.
+//! The command that draws a triangle in a slice: three edges, the hyperbola and three colours. The renderers' trees
+//! evaluate all of them.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse};
@@ -7,11 +7,11 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, SUBPIXEL_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use spatialgl::{ClipQuadratic, HalfWedge, Size};
 
-/// Fraction bits of the hyperbola's coefficients. With the usual 16 bits, S^2 would be only 4 units. With 26 bits it is
-/// 4,224, and values inside a display of 768 px stay within 48 bits (derived).
+/// Number of fraction bits in the hyperbola's coefficients. With the usual 16 bits, S^2 would be only 4 units. With 26
+/// bits it is 4,224, and values inside a display of 768 px fit into 48 bits (derived).
 pub const CLIP_FRACTION_BITS: u32 = 26;
 
-/// A corner on the sub-pixel grid of the machine.
+/// A corner of a triangle, with its position rounded to the sub-pixel grid of the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceCorner {
     /// Column and row from the top left of the image, in sixteenths of a pixel.
@@ -22,13 +22,13 @@ pub struct SliceCorner {
     pub colour: [f64; 3],
 }
 
-/// A triangle of one slice, without depth. The triangle covers the pixels inside all edges at which the hyperbola is
+/// A triangle in one slice, without depth. It covers the pixels that lie inside all edges and at which the hyperbola is
 /// not negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliceTriangle {
-    /// Edge functions, all `>= 0` inside, with the tie rule included.
+    /// Edge functions, which are `>= 0` inside the triangle. They include the rule for pixels exactly on an edge.
     pub edges: [Linear; 3],
-    /// The hyperbola A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`].
+    /// The hyperbola A B + b as a function on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
     /// Red, green and blue, with the fraction bits of colours on the ring.
     pub colour: [Linear; 3],
@@ -37,12 +37,13 @@ pub struct SliceTriangle {
 /// Number of steps of the sub-pixel grid per pixel.
 const STEPS: f64 = (1 << SUBPIXEL_BITS) as f64;
 
-/// Largest coefficient of the hyperbola in units. Beyond this limit double precision cannot represent single units.
+/// Largest coefficient of the hyperbola, in units of its last fraction bit. Double precision cannot represent every
+/// integer beyond this limit.
 const LARGEST_COEFFICIENT: f64 = (1u64 << 53) as f64;
 
 impl SliceTriangle {
-    /// Creates the command of three corners in the image of a slice. Returns `None` for a triangle without area, or if
-    /// its planes do not fit the machine's words.
+    /// Creates the command for three corners in the image of a slice. Returns `None` for a triangle without area, or if
+    /// the coefficients of its planes do not fit the machine's words.
     #[must_use]
     pub fn of_corners(corners: [SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.place.map(i64::from));
@@ -72,7 +73,7 @@ impl SliceTriangle {
         program
     }
 
-    /// Returns the clocks that an array needs for the command, with any operands.
+    /// Returns the number of clocks in which an array executes the command. It is the same for all operands.
     #[must_use]
     pub fn clocks(layout: &Layout) -> u32 {
         Self::default().program(layout).iter().map(ArrayInstruction::clocks).sum()
@@ -86,13 +87,13 @@ impl SliceTriangle {
         words.len()
     }
 
-    /// Appends the words of the command.
+    /// Appends the ring words of the command to `out`.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) {
         self.program(layout).iter().for_each(|instruction| instruction.encode(out));
     }
 
-    /// Returns a bound of the rounding error of the hyperbola's value at any pixel of an image, square pixels. The
-    /// bound is half a unit for each of the six coefficients.
+    /// Returns the largest possible rounding error of the hyperbola's value at any pixel of an image, in square pixels.
+    /// Each of the six coefficients contributes half a unit.
     #[must_use]
     pub fn clip_rounding_px2([width, height]: Size) -> f64 {
         let [x, y] = [width, height].map(f64::from);
@@ -100,8 +101,8 @@ impl SliceTriangle {
     }
 }
 
-/// Returns the exact edge function from one corner to the next, in units of 1/256 px^2 at the middle of each pixel. The
-/// function is one unit less if samples on the edge belong to the neighbour.
+/// Returns the exact edge function from one corner to the next, in units of 1/256 px^2, evaluated at the middle of each
+/// pixel. One unit is subtracted if samples exactly on the edge belong to the neighbouring triangle.
 fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -> Option<Linear> {
     let steps = 1i64 << SUBPIXEL_BITS;
     let middle = steps / 2;
@@ -114,7 +115,7 @@ fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -
     fits.then_some(Linear { a: (a * steps) as i32, b: (b * steps) as i32, c: c as i32 })
 }
 
-/// Returns the quadratic of the triangle's plane, converted from coordinates of the slice to pixels.
+/// Returns the hyperbola on the triangle's plane as a quadratic, converted from coordinates of the slice to pixels.
 fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Quadratic> {
     let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
     let local = corners.map(|corner| {
@@ -142,8 +143,9 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
     Some(Quadratic { xx, xy, yy, x, y, one })
 }
 
-/// Returns a colour channel over the triangle. Half a level is added, so that truncation of the fraction rounds to the
-/// nearest. A gradient that does not fit the words (slivers) is replaced by the mean of the corners.
+/// Returns a colour channel as a linear function over the triangle. Half a level is added, so that truncation of the
+/// fraction rounds to the nearest. If the gradient does not fit the words (slivers), the mean of the corners replaces
+/// it.
 fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let one = f64::from(1 << COLOUR_FRACTION_BITS);
     let value = corners.map(|corner| corner.colour[channel]);

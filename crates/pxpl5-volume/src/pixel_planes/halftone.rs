@@ -1,25 +1,25 @@
-//! Halftoning from eight bits to one on the pixel array, with a threshold in pixel memory and one comparison per
-//! channel.
+//! Halftoning on the pixel array, from eight bits to one bit per channel. Each channel is compared with a threshold in
+//! pixel memory.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Operand, Test};
 use pxpl5_wire::Word;
 
-/// Number of bits of a threshold, the same as of a channel.
+/// Number of bits of a threshold. It equals the number of bits of a channel.
 const THRESHOLD_BITS: u8 = 8;
 
-/// Returns the field of the thresholds: the first bits of the scratch memory, which clears and slice triangles do not
-/// change. The thresholds are loaded once at start-up, so they cost no time per volume.
+/// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice
+/// triangles do not change these bits. The thresholds are loaded once at start-up, so they cost no time per volume.
 ///
 /// # Panics
-/// If the layout has no scratch. The layout of Rendering Control with Phong shading has 124 bits of scratch.
+/// If the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of scratch.
 #[must_use]
 pub fn threshold_field(layout: &Layout) -> Operand {
     scratch(layout).part(0, THRESHOLD_BITS)
 }
 
-/// Returns the field with the bit of a channel (0 red, 1 green, 2 blue) after halftoning, which follows the field of
-/// the thresholds.
+/// Returns the location of a channel's bit after halftoning (0 red, 1 green, 2 blue). These bits follow the threshold
+/// in pixel memory.
 ///
 /// # Panics
 /// The same as [`threshold_field`].
@@ -32,8 +32,8 @@ fn scratch(layout: &Layout) -> Operand {
     layout.plan().scratch.expect("pxpl5-volume: slices are drawn in a layout with scratch")
 }
 
-/// Returns the program. For each channel it enables all pixels, disables those with threshold >= channel, and stores
-/// the Enable bit.
+/// Returns the halftone program. For each channel, it enables all pixels, disables those with threshold >= channel, and
+/// stores the Enable bit.
 #[must_use]
 pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
     let of_channel = |channel: u8| {
@@ -44,13 +44,14 @@ pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
     (0..3).flat_map(of_channel).collect()
 }
 
-/// Returns the clocks of the program on an array: 3 x (6 + 12 + 6) = 72, computed from its instructions.
+/// Returns the number of clocks of the halftone program on an array: 3 x (6 + 12 + 6) = 72, computed from its
+/// instructions.
 #[must_use]
 pub fn halftone_clocks(layout: &Layout) -> u64 {
     halftone_program(layout).iter().map(|instruction| u64::from(instruction.clocks())).sum()
 }
 
-/// Returns the words of the program on the ring: 3 x (1 + 2 + 1) = 12 words.
+/// Returns the ring words of the halftone program: 3 x (1 + 2 + 1) = 12 words.
 #[must_use]
 pub fn halftone_words(layout: &Layout) -> Vec<Word> {
     let mut words = Vec::new();

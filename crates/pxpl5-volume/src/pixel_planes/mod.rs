@@ -1,5 +1,5 @@
-//! Slices drawn by the renderers of Pixel-Planes 5, which is **beyond the paper**. The hyperbola on a triangle's plane
-//! is a quadratic, and the renderers' trees evaluate quadratics.
+//! Slices drawn by the renderers of Pixel-Planes 5, which is **beyond the paper**. The hyperbola that clips a triangle
+//! to a slice is a quadratic on the triangle's plane. The renderers' trees can evaluate quadratics.
 //!
 //! ```text
 //!  corners of a slice --snap to 1/16 px--> SliceTriangle (38 words, 238 clocks) --ring--> 36 regions of 128 x 128 pixels
@@ -7,9 +7,10 @@
 //!  bounds of renderers, ring, processors <--counted clocks and words---------------- colours of each region
 //! ```
 //!
-//! The emulated pixel arrays draw the slices, and the clocks are those of their instructions. Two methods give the
-//! volumes per second. [`SliceBounds`] has the time that each part needs alone. [`simulate()`] sends the messages of
-//! the volume through the ring and the boards, event by event, and is never faster than the bounds.
+//! The emulated pixel arrays draw the slices, and the clocks are those of their instructions. Two methods compute the
+//! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if it never waits.
+//! [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never faster
+//! than the bounds.
 
 mod bounds;
 mod command;

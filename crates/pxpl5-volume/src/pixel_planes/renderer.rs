@@ -16,10 +16,10 @@ use std::sync::{Mutex, PoisonError};
 /// The pixel array that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// The fast array, which computes whole values of the pixels that a command touches.
+    /// The fast array. It computes whole values, only for the pixels that a command touches.
     Lanes,
-    /// The reference model, which executes one bit of one instruction at a time. The array skips only steps that cannot
-    /// change a result.
+    /// The reference model of the array. It executes one bit of one instruction at a time, and skips only steps that
+    /// cannot change a result.
     BitSerial,
 }
 
@@ -28,23 +28,23 @@ pub enum ArrayKind {
 pub struct RendererWork {
     /// Number of regions that were cleared and drawn.
     pub regions: u64,
-    /// Number of slice triangles, counted once for each slice that draws them.
+    /// Number of slice triangles. A triangle counts once for each slice that draws it.
     pub triangles: u64,
-    /// Number of triangle commands, counted once for each region that they touch.
+    /// Number of triangle commands. A triangle counts once for each region that it touches in a slice.
     pub commands: u64,
-    /// Number of omitted triangles: those without area on the sub-pixel grid, and those whose planes do not fit the
-    /// words.
+    /// Number of omitted triangles. They have no area on the sub-pixel grid, or planes whose coefficients do not fit
+    /// the words.
     pub left_out: u64,
-    /// Clocks of clears, triangles and halftones.
+    /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
     /// Number of words of commands on the ring.
     pub command_words: u64,
 }
 
-/// A renderer of slices with a hyperbolic clip and an orthographic projection. The last triangle of a pixel determines
-/// its colour.
+/// A renderer of slices with a hyperbolic clip and an orthographic projection. If several triangles cover a pixel, the
+/// last one determines its colour.
 ///
-/// A pixel is marked if its colour is not black, because the arrays have no stencil.
+/// A pixel counts as drawn if its colour is not black, because the arrays have no stencil.
 #[derive(Debug)]
 pub struct PixelPlanesRenderer {
     layout: Layout,
@@ -55,7 +55,7 @@ pub struct PixelPlanesRenderer {
     loads: Mutex<HashMap<ViewKey, SliceLoad>>,
 }
 
-/// The load that a slice puts on a renderer.
+/// The work that a slice gives to a renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SliceLoad {
     /// Number of triangles that can have pixels in the slice.
@@ -64,7 +64,7 @@ pub struct SliceLoad {
     pub commands: Vec<u32>,
 }
 
-/// The view matrix of a slice as bits, which distinguishes the slice from the display's other slices.
+/// The bits of a slice's view matrix, used as a key that distinguishes the slices of a display.
 type ViewKey = [u64; 16];
 
 fn key_of(view: &SliceView) -> ViewKey {
@@ -119,15 +119,16 @@ impl PixelPlanesRenderer {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the loads of these slices when they were last drawn. A slice that was never drawn has an empty load.
+    /// Returns the work for each of these slices when it was last drawn. The work is zero for a slice that was never
+    /// drawn.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
         views.iter().map(|view| loads.get(&key_of(view)).cloned().unwrap_or_default()).collect()
     }
 
-    /// Returns commands for the triangles that can have pixels in the slice, each with the pixels that it can touch.
-    /// The second value is the number of omitted triangles.
+    /// Returns commands for the triangles that can have pixels in the slice, each with the pixels that the triangle can
+    /// touch. The second value is the number of omitted triangles.
     fn commands(&self, work: SliceWork<'_>, view: &SliceView, size: [u32; 2]) -> (Vec<Placed>, u64) {
         let mut placed = Vec::new();
         let mut left_out = 0;
@@ -148,12 +149,12 @@ impl PixelPlanesRenderer {
         (placed, left_out)
     }
 
-    /// Returns half the thickness of the slab at the rim, where it is thickest, with some slack.
+    /// Returns slightly more than half the thickness of the slice's slab at the rim, where the slab is thickest.
     fn half_thickness(&self) -> f64 {
         spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
     }
 
-    /// Executes a region on an array and draws its colours into the image.
+    /// Executes the commands of a region on an array and draws the resulting colours into the image.
     fn region(&self, [left, top]: [u32; 2], placed: &[Placed], image: &mut SliceImage) -> RendererWork {
         let [width, height] = image.size();
         let within = [REGION_SIZE.min(width - left), REGION_SIZE.min(height - top)];
@@ -191,7 +192,7 @@ impl PixelPlanesRenderer {
         }
     }
 
-    /// Returns the clocks of a region without triangles, which is still selected, cleared and halftoned.
+    /// Returns the clocks of a region without triangles. Even such a region is selected, cleared and halftoned.
     fn empty_clocks(&self) -> u64 {
         self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }
@@ -205,14 +206,14 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. The commands come from this crate, so none is
-/// illegal.
+/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all of them are
+/// legal.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))
 }
 
-/// A command and the pixels that it can touch: left, top, right, bottom, with both ends included.
+/// A command and the rectangle of pixels that it can touch: left, top, right, bottom, with both ends included.
 struct Placed {
     command: SliceTriangle,
     bounds: [i32; 4],

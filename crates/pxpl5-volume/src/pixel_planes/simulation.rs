@@ -1,6 +1,6 @@
 //! Simulation of one volume, event by event. The ring, the display's frame stores and the renderers with FIFO,
-//! controller and backing store are complete board models. A graphics processor consists only of its times and its
-//! port.
+//! controller and backing store are complete board models. A graphics processor (GP) is only a table of times and a
+//! ring port.
 //!
 //! ```text
 //!  GP k mod G --commands of slice k, region by region--> ring --> renderer k mod R --packed tiles--> ring --> Perspecta
@@ -8,18 +8,18 @@
 //!
 //! # Behaviour
 //!
-//! - The slices are assigned to the processors and to the renderers in turn. A processor makes the commands of a slice
-//!   and hands them to its port as one transfer, which keeps the renderer's port until its last word. Meanwhile the
-//!   processor makes at most one more slice.
-//! - A renderer is a complete board. Its input FIFO holds words back when it is full, and its controller takes the
-//!   clocks of the programs. A region with at least one tile goes through the backing store and leaves while the next
-//!   region's commands arrive.
+//! - Slice k goes to processor k mod G and to renderer k mod R. A processor computes the commands of a slice and hands
+//!   them to its port as one transfer. The transfer occupies the renderer's port until the last word. Meanwhile the
+//!   processor computes the commands of at most one more slice.
+//! - A renderer is a complete board. A full input FIFO stops the sender. The controller needs as many clocks as the
+//!   programs have. A region with at least one occupied tile is copied to the backing store, and sent from there while
+//!   the next region's commands arrive.
 //! - Instead of 32-bit pixels, the tiles of the region are sent, one message each, in the format of the display.
 //!
 //! # Not modelled
 //!
-//! The decision which tiles a renderer sends, and the packing of eight pixels' bits into a word: the backing store
-//! holds blocks of 32 bits per pixel. The processors' programs are times ([`GpTiming`]) without code.
+//! The renderer's decision which tiles to send, and its packing of eight pixels into a word: the backing store holds 32
+//! bits per pixel. The programs of the processors: only their times are modelled ([`GpTiming`]).
 
 use super::bounds::{BoundRow, SliceBounds};
 use super::command::SliceTriangle;
@@ -47,19 +47,19 @@ pub struct SimulatedRow {
     pub renderers: u64,
     /// Number of graphics processors that share the slices.
     pub processors: u64,
-    /// Time from the start of the first command to the arrival of the last tile, milliseconds.
+    /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,
     /// Volumes per second if each volume begins after the previous one has arrived.
     pub volumes_hz: f64,
-    /// Bound of the slowest part for the same messages.
+    /// Lower bound of the time for the same messages, given by the slowest part of the machine.
     pub bound: BoundRow,
-    /// Excess of the simulated time over the bound, percent.
+    /// Difference between the simulated time and its lower bound, as a percentage of the bound.
     pub over_bound_percent: f64,
-    /// Mean fraction of the time in which renderers execute commands, percent.
+    /// Percentage of the time in which renderers execute commands, averaged over the renderers.
     pub renderers_busy_percent: f64,
-    /// Mean fraction of the time in which processors make commands, percent.
+    /// Percentage of the time in which processors compute commands, averaged over the processors.
     pub processors_busy_percent: f64,
-    /// Mean fraction of the time in which the ring's channels are occupied, percent.
+    /// Percentage of the time in which the ring's channels are occupied, averaged over the channels.
     pub channels_busy_percent: f64,
     /// Number of messages that the display rejected, plus one if the volume was not shown.
     pub faults: u64,
@@ -67,10 +67,10 @@ pub struct SimulatedRow {
     pub events: u64,
 }
 
-/// Number of words of a [`CopyTarget`] in a command.
+/// Number of ring words that a [`CopyTarget`] takes in a command.
 const COPY_WORDS: u32 = 9;
 
-/// Simulates the messages of a volume on a machine with these numbers of boards, each 1 or more.
+/// Simulates the messages of a volume on a machine with the given numbers of boards, each 1 or more.
 ///
 /// # Errors
 ///
@@ -90,16 +90,16 @@ enum Event {
     Ring(RingEvent),
     FromRing(RingOutput),
     Renderer(usize, RendererEvent),
-    /// A processor has finished the commands of its current slice.
+    /// The processor with this index has finished the commands of its current slice.
     Made(usize),
 }
 
-/// A graphics processor with the slices that it still has to make.
+/// A graphics processor, with the slices whose commands it still has to compute.
 #[derive(Debug, Default)]
 struct Processor {
     slices: VecDeque<usize>,
     working_on: Option<usize>,
-    /// A finished slice that waits until the previous one has left.
+    /// A slice with finished commands, which waits until the previous slice has left the port.
     waiting: Option<usize>,
     is_sending: bool,
     busy: Span,
@@ -190,7 +190,7 @@ impl<'a> Machine<'a> {
         self.row(bounds)
     }
 
-    /// Sends all maps first, because a tile must not overtake its map.
+    /// Sends all maps of tiles before any tile, because a tile must not overtake its map.
     fn send_maps(&mut self) {
         let destination = self.display_node();
         let maps: Vec<Body> = self.traffic.maps.iter().map(|map| Body::Words(Arc::clone(map))).collect();
@@ -223,7 +223,7 @@ impl<'a> Machine<'a> {
         self.send_finished_slice(number, now);
     }
 
-    /// Hands the finished slice to the port if the previous one has left.
+    /// Hands the commands of the finished slice to the port if the previous slice has left.
     fn send_finished_slice(&mut self, number: usize, now: Time) {
         if self.processors[number].is_sending {
             return;
@@ -277,7 +277,8 @@ impl<'a> Machine<'a> {
         lists
     }
 
-    /// Returns the copy order of a region as a single message. [`Self::send_tiles`] replaces this message.
+    /// Returns the command to copy a region to the display, as a single message. [`Self::send_tiles`] later replaces
+    /// this message by the tiles.
     fn copy(&self, slice: usize, region: usize) -> CopyOrder {
         let [columns, rows] = self.traffic.size.map(|side| side.div_ceil(REGION_SIZE));
         let side = 32;
@@ -355,7 +356,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Sends the tiles of a region instead of its pixels.
+    /// Sends the occupied tiles of a region in place of its pixels.
     fn send_tiles(&mut self, at: Time, message: &Message) {
         let Body::Pixels(pixels) = &message.body else { return };
         let slice = pixels.target.picture.0 as usize;
@@ -372,7 +373,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Requests a swap, and shows the volume at the first strobe 0 after the last tile.
+    /// Requests a swap of the display's stores, and shows the volume at the first strobe 0 after the last tile.
     fn swap(&mut self) {
         let body = Body::Words(swap_request(1));
         self.deliver(self.last_tile_at, body);
@@ -421,8 +422,8 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times with the slice programs in place of the commands whose codes they use: a slice triangle
-/// as a triangle, the halftone as deferred shading.
+/// Returns the renderer's times, in which slice programs replace the commands whose codes they use. A slice triangle
+/// replaces a triangle, and the halftone replaces deferred shading.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
@@ -431,7 +432,7 @@ fn slice_timing(layout: &Layout) -> RendererTiming {
     }
 }
 
-/// Returns the time in which a processor makes the commands of a slice and hands them over.
+/// Returns the time that a processor needs to compute the commands of a slice and to hand them over.
 fn making(load: &super::renderer::SliceLoad) -> Span {
     let gp = GpTiming::PAPERS;
     let commands: u64 = load.commands.iter().map(|count| u64::from(*count)).sum();

@@ -6,15 +6,15 @@ use pxpl5_wire::{REGION_SIZE, Word};
 use spatialgl::{Size, SliceView, Tiling, VolumeFrame};
 use std::sync::Arc;
 
-/// The messages of one volume. The occupied tiles are assumed to be known when a region is copied, because the machine
-/// has no query.
+/// The ring messages of one volume. The model assumes that the occupied tiles are known when a region is copied,
+/// because the machine has no occlusion query.
 #[derive(Clone, Debug)]
 pub struct SliceTraffic {
     /// Width and height of a slice, pixels.
     pub(super) size: Size,
-    /// Maps of tiles, one message each.
+    /// Maps of the tiles that will be sent, one message each.
     pub(super) maps: Vec<Arc<[Word]>>,
-    /// Messages of the slices, in their order.
+    /// Messages of each slice, in the order of the slices.
     pub(super) slices: Vec<SliceMessages>,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct SliceMessages {
 }
 
 impl SliceTraffic {
-    /// Returns the messages of a volume for the slices that a renderer has drawn. Returns `None` if the tiles cannot be
+    /// Returns the messages for the slices of a volume that a renderer has drawn. Returns `None` if the tiles cannot be
     /// sent (see [`perspecta::volume_messages`]).
     #[must_use]
     pub fn of(
@@ -56,13 +56,14 @@ impl SliceTraffic {
         Some(Self { size, maps, slices })
     }
 
-    /// Returns the number of tiles that are sent, for all slices.
+    /// Returns the number of tiles that are sent, summed over all slices.
     #[must_use]
     pub fn tiles(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).map(|region| region.len() as u64).sum()
     }
 
-    /// Returns the number of regions with at least one tile. Each of them goes through the backing store.
+    /// Returns the number of regions with at least one tile to send. Each of these regions is copied to the backing
+    /// store.
     #[must_use]
     pub fn copies(&self) -> u64 {
         self.slices.iter().flat_map(|slice| &slice.tiles).filter(|region| !region.is_empty()).count() as u64

@@ -1,4 +1,4 @@
-//! A flat screen: one view of the whole frustum, with hidden surfaces removed.
+//! A flat screen: one view of the whole scene, with hidden surfaces removed.
 
 use crate::error::{SpatialError, require};
 use crate::projection::Size;
@@ -6,7 +6,7 @@ use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 
-/// A flat screen with the usual graphics pipeline: one picture of the scene from one eye, with depth.
+/// A flat screen with the usual graphics pipeline: one picture of the scene from one eye, with a depth test.
 #[derive(Clone, Debug)]
 pub struct FlatDisplay {
     size: Size,
@@ -14,7 +14,7 @@ pub struct FlatDisplay {
 }
 
 impl FlatDisplay {
-    /// Creates a screen with any view matrix and any projection to clip coordinates of depth 0 to 1.
+    /// Creates a screen with any view matrix and any projection to clip coordinates with depths from 0 to 1.
     ///
     /// # Errors
     ///

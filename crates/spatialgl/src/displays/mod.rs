@@ -1,4 +1,5 @@
-//! Three displays, each defined by views and slice volumes: a swept screen, a flat screen and a stack of planes.
+//! Three displays, each defined by views and slice volumes: a swept (rotating) screen, a flat screen and a stack of
+//! planes.
 
 mod flat;
 mod stack;

@@ -1,4 +1,4 @@
-//! A stack of planes: n pictures one behind the other, each of which represents a slab of space.
+//! A stack of planes: pictures one behind the other, each of which represents a slab of space.
 
 use super::flat::check_size;
 use crate::error::{SpatialError, require};
@@ -7,7 +7,8 @@ use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
 
-/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest, with slabs that touch.
+/// Parallel planes perpendicular to z, from the farthest (least z) to the nearest. The slabs of neighbouring planes
+/// touch.
 #[derive(Clone, Debug)]
 pub struct PlaneStack {
     size: Size,
@@ -16,7 +17,7 @@ pub struct PlaneStack {
 }
 
 impl PlaneStack {
-    /// Creates a stack of `planes` that divide a depth in pixels around z = 0 into equal slabs.
+    /// Creates a stack of `planes` planes. They divide a range of z around 0, `depth` pixels long, into equal slabs.
     ///
     /// # Errors
     ///
@@ -30,7 +31,8 @@ impl PlaneStack {
     }
 }
 
-/// Returns the s at which slab `i` begins. Neighbouring slabs use the same number, so no point lies between them.
+/// Returns the s at which slab `i` begins. It is exactly the end of the previous slab, so no point lies between two
+/// slabs.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }

@@ -33,13 +33,13 @@ pub struct SweptConfig {
     /// Angle of slice 0, radians.
     pub phase: f64,
     pub rotation: Rotation,
-    /// Method of clipping the scene to a slice.
+    /// Method of clipping the scene to the volume of a slice.
     pub clip: SliceClip,
-    /// Rule for points in the planes between slices.
+    /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
-    /// Fraction bits of the evaluated boundary planes, or `None` for double precision.
+    /// Number of fraction bits to which values of boundary planes are rounded, or `None` for double precision.
     pub plane_fraction_bits: Option<u32>,
-    /// Projection of points off the slice onto its image.
+    /// Projection that maps points near a slice to the slice's image.
     pub projection: Projection,
 }
 
@@ -67,7 +67,7 @@ impl SweptConfig {
         f64::from(self.width) / 2.0
     }
 
-    /// Returns the half wedge of one slice.
+    /// Returns half of the wedge between two slices of this display.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())
@@ -91,7 +91,7 @@ impl SweptConfig {
     }
 }
 
-/// A display of slices around an axis: the published one, or one with other numbers.
+/// A display whose slices are arranged around an axis: the published display, or one with other numbers.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,
@@ -100,7 +100,7 @@ pub struct SweptDisplay {
 }
 
 impl SweptDisplay {
-    /// Creates the views of all slices, with their volumes, eyes and bins.
+    /// Creates the views of all slices, with their slice volumes, eyes and bins.
     ///
     /// # Errors
     ///
@@ -166,9 +166,9 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     }
 }
 
-/// Returns sine and cosine of the angle that lies `half_slices` half slices after slice 0.
+/// Returns sine and cosine of the angle that lies `half_slices` times half the angle between slices after slice 0.
 ///
-/// Of two opposite angles, one is computed and the other is its exact negative, for any phase.
+/// Of two opposite directions, one is computed, and the other is its exact negative, for any phase.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {
@@ -182,8 +182,8 @@ fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     if is_turned { (-sin, -cos) } else { (sin, cos) }
 }
 
-/// Returns the boundary planes A = L_k and B = -L_(k+1), where L_k(p) = z cos b_k - x sin b_k and b_k lies half a slice
-/// before slice k.
+/// Returns the boundary planes A = L_k and B = -L_(k+1) of slice k. L_k(p) is z cos b_k - x sin b_k, and the angle b_k
+/// lies half a slice before slice k.
 fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     let (sin, cos) = direction(config, 2 * i64::from(k) - 1);
     let (next_sin, next_cos) = direction(config, 2 * i64::from(k) + 1);
@@ -194,7 +194,7 @@ fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     }
 }
 
-/// Returns the double wedges of 45 degrees, one bit each, that the wedge of slice `k` overlaps.
+/// Returns the bins that the wedge of slice `k` overlaps, one bit each. A bin is a double wedge of 45 degrees.
 fn double_wedges(config: &SweptConfig, k: u32) -> u64 {
     let slices = f64::from(config.slices);
     let centre = if config.rotation == Rotation::XToZ { f64::from(k) } else { -f64::from(k) };

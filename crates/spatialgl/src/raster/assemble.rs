@@ -1,14 +1,14 @@
-//! Transformation of world vertices to the window of a slice. Points and lines become triangles.
+//! Transformation of world vertices to the window of a slice, and conversion of points and lines to triangles.
 
 use super::setup::{Corner, Place, along};
 use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
 
-/// Number of triangles in the round end of a line.
+/// Number of triangles that form the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// The transformation of a view, with its matrices as rows of numbers.
+/// The transformation of a view. Its matrices are stored as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
@@ -48,7 +48,7 @@ impl SliceTransform {
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// Calls `draw` with the triangles of a primitive, in the order of drawing.
+    /// Converts a primitive to triangles, and calls `draw` with them in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,
@@ -71,7 +71,8 @@ impl SliceTransform {
         }
     }
 
-    /// Draws a square parallel to the slice at the point's distance from the slice.
+    /// Draws a square for a point. The square is parallel to the slice, at the same distance from the slice as the
+    /// point.
     fn square(&self, world: [f64; 3], half: f64, colour: [f64; 3], draw: &mut dyn FnMut(&[Corner; 3])) {
         let local = self.local(world);
         let corner = |du: f64, dv: f64| {
@@ -86,15 +87,15 @@ impl SliceTransform {
     }
 }
 
-/// Returns the position at which a line with these distances from the slice crosses the slice, as a fraction of its
-/// length.
+/// Returns the position at which a line crosses the slice, as a fraction of the line's length. The arguments are the
+/// distances of both ends from the slice. Returns `None` if the line does not cross the slice.
 fn crossing([from, to]: [f64; 2]) -> Option<f64> {
     (from * to < 0.0).then(|| from / (from - to))
 }
 
 /// Draws a line. The part between the near and far planes becomes a quad of the line's width. Each end between these
-/// planes gets a round cap. Another cap marks the crossing with the slice, so that a line perpendicular to the slice is
-/// visible.
+/// planes gets a round cap. Another cap is drawn where the line crosses the slice, so that a line perpendicular to the
+/// slice is visible.
 fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
     // Cut the line at the near and far planes.
     let Some([begin, end]) = between_planes(from, to) else { return };
@@ -124,7 +125,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes as a range within 0..1, or `None` if no part lies there.
+/// Returns the part of a line between the near and far planes as a range within 0..1. Returns `None` if no part lies
+/// there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;

@@ -1,5 +1,5 @@
-//! Clusters of the primitives of a bin, each with a bounding sphere, so that most primitives are rejected without a
-//! test of their own.
+//! Clusters of the primitives in a bin. Each cluster has a bounding sphere, so most primitives are rejected without an
+//! individual test.
 
 use super::setup::along;
 use crate::command::CommandBuffer;
@@ -7,10 +7,10 @@ use crate::command::CommandBuffer;
 /// Number of primitives in a cluster. Neighbours in a mesh are mostly neighbours in its list.
 const CLUSTER: usize = 8;
 
-/// Pixels by which a sphere is enlarged against rounding.
+/// Number of pixels by which a sphere is enlarged, to allow for rounding.
 const SLACK: f64 = 1e-6;
 
-/// A sphere around everything that some primitives can draw.
+/// A sphere around all points that some primitives can draw.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     centre: [f64; 3],
@@ -24,7 +24,7 @@ struct BallLanes {
     radius: [f64; CLUSTER],
 }
 
-/// A cluster of a bin: consecutive primitives.
+/// Consecutive primitives of a bin that share a bounding sphere.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
     ball: &'a Ball,
@@ -33,8 +33,8 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl<'a> Cluster<'a> {
-    /// Returns the primitives that can reach any s in a range. `row` is the row of the view matrix that computes s.
-    /// Omitted primitives cannot reach the range.
+    /// Returns the primitives that can have a point with s in the given range. `row` is the row of the view matrix that
+    /// computes s. Omitted primitives have no such point.
     #[inline(always)]
     pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> ReachablePrimitives<'a> {
         // First test the sphere around the whole cluster, then the spheres of its primitives.
@@ -75,7 +75,7 @@ impl Iterator for ReachablePrimitives<'_> {
     }
 }
 
-/// The primitives of a recording that a group of slices draws, in their order.
+/// The primitives of a recording that a group of slices draws, in the order of drawing.
 #[derive(Clone, Debug, Default)]
 pub struct Bin {
     primitives: Vec<u32>,
@@ -84,7 +84,7 @@ pub struct Bin {
 }
 
 impl Bin {
-    /// Creates a bin of primitives, given by their indices in the recording in ascending order.
+    /// Creates a bin from the indices of primitives in the recording. The indices must be in ascending order.
     ///
     /// # Panics
     /// If the recording has no such primitive.

@@ -1,5 +1,5 @@
-//! Connected rasterization, which is **beyond the paper**: adjacent pixels along the intersection of a triangle with
-//! the slice plane.
+//! Connected rasterization, which is **beyond the paper**. It draws adjacent pixels along the curve in which a triangle
+//! intersects the plane of the slice.
 
 use super::SliceWork;
 use super::assemble::SliceTransform;
@@ -8,14 +8,15 @@ use crate::command::Shape;
 use crate::curve::plane_curve;
 use crate::image::SliceImage;
 
-/// A point on the curve of a triangle: window coordinates and colour.
+/// A point on the curve in which a triangle intersects the slice: window coordinates and colour.
 #[derive(Clone, Copy)]
 struct CurvePoint {
     at: [f64; 2],
     colour: [f64; 3],
 }
 
-/// Fills the gaps that sampling left along every triangle's curve. Returns the number of pixels added.
+/// Draws the pixels that sampling missed along the curve in which each triangle intersects the slice. Returns the
+/// number of pixels added.
 pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut SliceImage) -> u64 {
     let mut added = 0;
     for primitive in work.bin.primitives().iter().map(|i| &work.commands.primitives[*i as usize]) {
@@ -36,7 +37,8 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
     added
 }
 
-/// Lights unlit pixels on the way from one point to another, one for each step along the longer axis.
+/// Draws a line of pixels between two points where no fragment was drawn before. There is one pixel for each step along
+/// the longer axis. Returns the number of pixels drawn.
 fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     let Some([begin, end]) = inside(from.at, to.at, image.size()) else { return 0 };
     let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;

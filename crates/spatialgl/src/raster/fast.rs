@@ -1,4 +1,4 @@
-//! The fast rasterizer of the host, which rejects whole triangles by their distance from the slice and draws eight
+//! The fast rasterizer for the host. It rejects whole triangles by their distance from the slice, and draws eight
 //! pixels at a time.
 
 use super::assemble::SliceTransform;
@@ -11,7 +11,8 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread with the same voxels and the same counts as [`ReferenceRenderer`](super::ReferenceRenderer).
+/// A fast renderer on one thread. It draws the same voxels and gives the same counts as
+/// [`ReferenceRenderer`](super::ReferenceRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the
 /// same results.
@@ -80,7 +81,7 @@ fn render_pass(
     }
 }
 
-/// Sets up a triangle. The values of its corners are read only if a part of it is visible.
+/// Prepares and draws a triangle. The attributes of its corners are read only if a part of the triangle is visible.
 #[inline(always)]
 fn triangle(
     transform: &SliceTransform,
@@ -100,7 +101,7 @@ fn triangle(
     Setup::within(&[corner(0, a), corner(1, b), corner(2, c)], bounds)
 }
 
-/// Returns true if all corners lie on one side of the range that the slice can show.
+/// Returns true if all corners lie on one side of the range of s that the slice can show.
 #[inline(always)]
 fn is_off_slice(row: &[f64; 4], corners: [&[f64; 3]; 3], low: f64, high: f64) -> bool {
     let a = along(row, *corners[0]);

@@ -1,39 +1,39 @@
-//! The inner loops of the fast path: eight pixels of a row at a time, in plain Rust.
+//! The inner loops of the fast rasterizer, in plain Rust. They process eight pixels of a row at a time.
 //!
-//! Every lane computes the same as the reference model for one pixel, with the same operations in the same order. The
-//! optimizations cannot change a result. The loops omit pixels outside a conservative range of a row, and sums whose
-//! terms all have the same sign.
+//! Each of the eight lanes computes the same as the reference model for one pixel, with the same operations in the same
+//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. They
+//! also omit sums whose terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
 use crate::command::Combine;
 use crate::image::SliceImage;
 use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 
-/// Number of pixels in a vector, which is also the number in a byte of the stencil.
+/// Number of pixels in a vector. A byte of the stencil has as many pixels.
 const LANES: usize = 8;
 
-/// A value for each pixel of a vector.
+/// One value for each of the eight pixels of a vector.
 type EachLane = [f64; LANES];
 
-/// Greatest number of pixels in a triangle's bounds at which all rows are drawn as one sequence of pixels.
+/// Largest number of pixels in a triangle's bounds for which all rows are drawn as one sequence of pixels.
 const SMALL: u32 = 64;
 
-/// Least width in pixels for which the range of each row is computed before its pixels.
+/// Smallest width of a triangle, in pixels, for which the range of each row is computed before its pixels.
 const WIDE: u32 = 24;
 
-/// The numbers of generated and accepted fragments of a triangle.
+/// The number of generated fragments and of accepted fragments of a triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fragments {
     pub(super) generated: u64,
     pub(super) accepted: u64,
 }
 
-/// Settings that are the same for all fragments of a draw.
+/// Settings that are the same for all fragments of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     pub(super) test: SampleTest,
     pub(super) combine: Combine,
-    /// True if rejected fragments do not count as generated.
+    /// True if fragments that fail the slice's test do not count as generated.
     pub(super) clips_first: bool,
     pub(super) hides: bool,
 }
@@ -59,7 +59,7 @@ pub(super) fn draw(setup: &Setup, mode: Mode, image: &mut SliceImage) -> Fragmen
     }
 }
 
-/// Draws with planes of few bits, which need a division for every pixel.
+/// Draws a triangle if boundary planes are rounded to few bits, which needs a division for every pixel.
 fn draw_rounded(setup: &Setup, mode: Mode, scale: f64, image: &mut SliceImage) -> Fragments {
     let round = |x: f64, w: f64| (x / w * scale).round_ties_even() / scale;
     let exact = mode.test.without_rounding();
@@ -93,7 +93,7 @@ fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64,
     fragments
 }
 
-/// Draws a triangle of few pixels. All its pixels are numbered row by row and processed eight at a time.
+/// Draws a triangle with few pixels. The pixels of its bounds are numbered row by row and processed eight at a time.
 #[inline(always)]
 fn small(
     setup: &Setup,
@@ -117,19 +117,19 @@ fn small(
     }
 }
 
-/// Eight pixels, and the weights of the corners at each.
+/// Eight pixels, and the weights of the triangle's corners at each pixel.
 struct Pixels {
     weights: [EachLane; 3],
-    /// Number of valid pixels if there are fewer than eight.
+    /// Number of valid pixels, at most eight.
     count: u32,
-    /// Column of the first pixel, in the block's top row.
+    /// Column of the first pixel, in the top row of the block of pixels.
     x: u32,
     y: u32,
-    /// Width of a block whose rows follow each other, or `u32::MAX` for pixels of one row.
+    /// Width of the block if its rows follow each other in one sequence, or `u32::MAX` for pixels of one row.
     width: u32,
 }
 
-/// The planes (near, far) that need a test, because some corner lies beyond the plane.
+/// For the near and the far plane, true if pixels must be tested because some corner lies beyond the plane.
 #[derive(Clone, Copy)]
 struct Checks {
     near: bool,
@@ -164,7 +164,7 @@ fn weighted_lanes(weights: &[EachLane; 3], values: [f64; 3]) -> EachLane {
 }
 
 impl Pixels {
-    /// Returns column and row of a pixel. `left` is the block's first column.
+    /// Returns column and row of a pixel. `left` is the first column of the block of pixels.
     #[inline(always)]
     const fn place(&self, lane: u32, left: u32) -> [u32; 2] {
         if self.width == u32::MAX {
@@ -248,8 +248,8 @@ impl Setup {
         weights
     }
 
-    /// Returns the weights at eight pixels from index `first` on. The pixels of the triangle's bounds are numbered row
-    /// by row.
+    /// Returns the weights of the corners at eight pixels, from index `first` on. The pixels of the triangle's bounds
+    /// are numbered row by row.
     #[inline(always)]
     fn weights_of_block(&self, first: u32, width: u32) -> [EachLane; 3] {
         let columns = f64::from(width);
@@ -276,8 +276,8 @@ impl Setup {
         weights
     }
 
-    /// Returns the range of pixels of a row that can be inside the triangle and between the near and far planes, with
-    /// one pixel more on both sides.
+    /// Returns the range of pixels of a row that can be inside the triangle and between the near and far planes. The
+    /// range is enlarged by one pixel on both sides.
     fn row_range(&self, row: [f64; 3], checks: Checks) -> [u32; 2] {
         let mut range = self.bounds.x.map(f64::from);
         for (Edge { a, b, x, c, .. }, row) in self.edges.iter().zip(row) {
@@ -296,7 +296,8 @@ impl Setup {
         [range[0] as u32, range[1].max(range[0]) as u32]
     }
 
-    /// Narrows a range to the part where a weighted sum is not negative, if rounding cannot move the limit by a pixel.
+    /// Reduces a range of pixels to the part where a weighted sum is not negative. Leaves the range unchanged if
+    /// rounding could move its limit by a pixel.
     fn narrow_by(&self, range: &mut [f64; 2], row: [f64; 3], values: [f64; 3]) {
         let mut slope = 0.0;
         let mut constant = 0.0;
@@ -317,7 +318,8 @@ impl Setup {
     }
 }
 
-/// Narrows a range of pixels by a function that rises or falls through zero at `crossing`.
+/// Reduces a range of pixels to the side of `crossing` at which a linear function is positive. The function has slope
+/// `slope` and is zero at `crossing`.
 #[inline(always)]
 fn narrow(range: &mut [f64; 2], slope: f64, crossing: f64) {
     let [left, right] = *range;

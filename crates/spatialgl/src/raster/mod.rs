@@ -1,5 +1,5 @@
-//! Conversion of primitives to fragments: set-up, the reference model and the fast rasterizer, which agree in every
-//! voxel.
+//! Conversion of primitives to fragments: preparation of triangles, the reference model and the fast rasterizer. Both
+//! rasterizers draw the same voxels.
 
 mod assemble;
 mod cluster;
@@ -20,32 +20,32 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use serde::{Deserialize, Serialize};
 
-/// The pixels of a slice that a primitive covers.
+/// Rule for the pixels of a slice that a primitive covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
     /// The pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
-    /// The same pixels, plus a line of adjacent pixels along the intersection with the slice. **Beyond the paper**,
-    /// which wants this coverage and finds that GPUs do not offer it.
+    /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
+    /// paper**: the paper wants this coverage and finds that GPUs do not offer it.
     Connected,
 }
 
-/// Counts of drawing one slice.
+/// Counts of the work for one slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SliceStats {
-    /// Number of primitives issued, in all passes.
+    /// Number of primitives drawn, in all passes.
     pub draws: u64,
     /// Number of fragments that reach the fragment program.
     pub generated: u64,
     /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Number of pixels added to connect intersections, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with the slice, which is beyond the paper.
     pub added: u64,
 }
 
-/// The part of a recording that one slice draws: the primitives of its bin, in their order.
+/// The part of a recording that one slice draws: the primitives of its bin, in the order of drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
     /// Recording whose primitives are drawn.
@@ -54,9 +54,9 @@ pub struct SliceWork<'a> {
     pub coverage: Coverage,
 }
 
-/// A renderer of slices, which receives an image in the state after [`SliceImage::clear`].
+/// A renderer of slices. The image that it receives is in the state after [`SliceImage::clear`].
 pub trait SliceRenderer: Send + Sync {
-    /// Draws one slice in all its passes.
+    /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;
 
     /// Returns the number of samples per pixel. Each sample counts as a fragment.

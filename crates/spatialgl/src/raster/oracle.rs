@@ -1,4 +1,4 @@
-//! The reference rasterizer, which follows the specification literally: one primitive, one pixel and one test at a
+//! The reference rasterizer. It follows the specification step by step, with one primitive, one pixel and one test at a
 //! time.
 
 use super::assemble::SliceTransform;
@@ -10,7 +10,7 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The reference model, without optimizations: the definition of the voxels that every other renderer must draw.
+/// The reference model, without optimizations. It defines the voxels that every other renderer must draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReferenceRenderer;
 
@@ -65,8 +65,8 @@ fn draw(
 }
 
 impl Setup {
-    /// Returns the weights of the corners at a sample, or `None` unless the sample is inside and between the near and
-    /// far planes.
+    /// Returns the weights of the corners at a sample. Returns `None` if the sample is outside the triangle, or not
+    /// between the near and far planes.
     fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let weights = self.edges.map(|edge| edge.a * (x - edge.x) + edge.row(y));
         let is_inside = (0..3).all(|i| weights[i] >= self.least[i]);

@@ -1,9 +1,9 @@
 //! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
 //! The triangle needs neither clipping nor a division. Each edge is a linear function of the window, positive inside.
-//! The three functions are the weights of the corners at every sample, up to one positive factor, and all are negative
-//! behind the eye. Vertex attributes are interpolated by these weights. Corners behind the eye or 10^6 px away
-//! therefore need no special case.
+//! The three functions are the weights of the corners at every sample, except for one positive factor that they share.
+//! Behind the eye, all three are negative. Vertex attributes are interpolated by these weights. Corners behind the eye
+//! or 10^6 px away therefore need no special case.
 
 /// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub(super) struct Place {
     pub(super) w: f64,
 }
 
-/// A corner with its attributes p and q for the test of the slice's volume, and its colour.
+/// A corner of a triangle, with its colour and the attributes p and q for the test of the slice's volume.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) place: Place,
@@ -24,7 +24,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// Returns the interpolation between this corner and another: `self` at t = 0, `other` at 1.
+    /// Returns the interpolation between this corner and another one: `self` at t = 0, `other` at t = 1.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
         let from = &self.place;
@@ -38,22 +38,22 @@ impl Corner {
         }
     }
 
-    /// Returns the corner moved in the window by this many pixels.
+    /// Returns the corner, moved in the window by (dx, dy) pixels.
     pub(super) fn moved(&self, [dx, dy]: [f64; 2]) -> Self {
         let Place { x, y, z, w } = self.place;
         Self { place: Place { x: x + dx * w, y: y + dy * w, z, w }, ..*self }
     }
 }
 
-/// Returns the product of a matrix row and (p, 1).
+/// Returns the scalar product of a matrix row and (p, 1).
 #[inline(always)]
 pub(super) fn along(row: &[f64; 4], p: [f64; 3]) -> f64 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]
 }
 
-/// A linear function of the window, a (x - x0) + (b (y - y0) + c).
+/// The linear function of an edge in the window, a (x - x0) + (b (y - y0) + c).
 ///
-/// The anchor (x0, y0) is a vertex, and both triangles of an edge use the same vertex. The function is exactly zero
+/// The anchor (x0, y0) is a vertex, and both triangles at an edge use the same vertex. The function is exactly zero
 /// there, and the function of the neighbouring triangle is its exact negative.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edge {
@@ -81,13 +81,13 @@ impl Edge {
         self.a * (x - self.x) + self.row(y)
     }
 
-    /// Returns the part of the function that is constant along a row.
+    /// Returns the part of the edge function that is constant along a row of pixels.
     #[inline(always)]
     pub(super) fn row(&self, y: f64) -> f64 {
         self.b * (y - self.y) + self.c
     }
 
-    /// Returns the value of the function at a homogeneous point.
+    /// Returns the value of the edge function at a homogeneous point.
     #[inline(always)]
     fn dot(&self, corner: &Place) -> f64 {
         if corner.w > 0.0 {
@@ -101,8 +101,9 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// Returns the least value of the function for a sample inside. The value is zero for left edges and horizontal
-    /// upper edges, which include the samples on them. For other edges it is the smallest number above zero.
+    /// Returns the least value that the edge function has for a sample inside the triangle. The value is zero for left
+    /// edges and horizontal upper edges, which include the samples on them. For other edges it is the smallest number
+    /// above zero.
     #[inline(always)]
     fn least(&self) -> f64 {
         let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);
@@ -110,7 +111,8 @@ impl Edge {
     }
 }
 
-/// Returns the end of an edge from which both its triangles measure: the left end, or the upper end of a vertical edge.
+/// Returns the end of an edge that both adjacent triangles use as the anchor: the left end, or the upper end of a
+/// vertical edge.
 #[inline(always)]
 fn anchor(from: &Place, to: &Place) -> [f64; 2] {
     if from.w == 1.0 && to.w == 1.0 {
@@ -134,7 +136,7 @@ pub(super) struct Bounds {
 pub(super) struct Setup {
     /// Edges opposite to the corners, in the order of the corners.
     pub(super) edges: [Edge; 3],
-    /// Least value of each edge for a sample inside: zero, or the smallest number above zero.
+    /// For each edge, the least value of its function for a sample inside: zero, or the smallest number above zero.
     pub(super) least: [f64; 3],
     /// Distances of the corners from the near plane.
     pub(super) near: [f64; 3],
@@ -142,16 +144,17 @@ pub(super) struct Setup {
     pub(super) far: [f64; 3],
     pub(super) p: [f64; 3],
     pub(super) q: [f64; 3],
-    /// Colours by channel, then by corner.
+    /// Colours of the corners: the first index is the channel, the second is the corner.
     pub(super) colour: [[f64; 3]; 3],
     pub(super) bounds: Bounds,
 }
 
-/// Pixels by which bounds are enlarged against rounding.
+/// Number of pixels by which bounds are enlarged, to allow for rounding.
 const MARGIN: f64 = 1e-3;
 
 impl Setup {
-    /// Sets up a triangle. Returns `None` if the triangle's plane contains the eye, or if [`bounds`] returns `None`.
+    /// Prepares a triangle for sampling. Returns `None` if the triangle's plane contains the eye, or if [`bounds`]
+    /// returns `None`.
     #[inline(always)]
     pub(super) fn new(corners: &[Corner; 3], size: [u32; 2]) -> Option<Self> {
         let [a, b, c] = corners;
@@ -159,7 +162,7 @@ impl Setup {
         Self::within(corners, bounds)
     }
 
-    /// Sets up a triangle with bounds from [`bounds`].
+    /// Prepares a triangle for sampling, with bounds from [`bounds`].
     #[inline(always)]
     pub(super) fn within(corners: &[Corner; 3], bounds: Bounds) -> Option<Self> {
         let [a, b, c] = corners;
@@ -188,8 +191,8 @@ fn all_negative(values: [f64; 3]) -> bool {
     values[0] < 0.0 && values[1] < 0.0 && values[2] < 0.0
 }
 
-/// Returns the pixels whose centres the triangle can cover, or all pixels if a corner is behind the eye. Returns `None`
-/// if no pixel can be covered, or if the triangle lies beyond the near or far plane.
+/// Returns the ranges of pixels whose centres the triangle can cover, or all pixels if a corner is behind the eye.
+/// Returns `None` if no pixel can be covered, or if the triangle lies beyond the near or far plane.
 #[inline(always)]
 pub(super) fn bounds([a, b, c]: [&Place; 3], size: [u32; 2]) -> Option<Bounds> {
     if all_negative([a.z, b.z, c.z]) || all_negative([a.w - a.z, b.w - b.z, c.w - c.z]) {
@@ -227,7 +230,7 @@ pub(super) fn weighted(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// Returns an interpolated colour channel as 8 bits.
+/// Returns a colour channel, interpolated and converted to 8 bits.
 #[inline(always)]
 pub(super) fn channel(weights: [f64; 3], values: [f64; 3], inverse_sum: f64) -> u8 {
     (weighted(weights, values) * inverse_sum + 0.5) as u8

@@ -1,4 +1,4 @@
-//! Supersampling for comparison with jitter. The paper rejects supersampling as too expensive.
+//! Supersampling, for comparison with jitter. The paper rejects supersampling as too expensive.
 
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::command::Combine;
@@ -7,16 +7,16 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use std::sync::{Mutex, PoisonError};
 
-/// A renderer that draws each slice with 4 or 16 samples per pixel and returns their mean. Samples are counted as
-/// fragments.
+/// A renderer that draws each slice with 4 or 16 samples per pixel and returns the mean of each pixel's samples.
+/// Samples are counted as fragments.
 ///
-/// A pixel is marked if any of its samples was drawn. Samples without a fragment have the background's colour, so a
-/// partly covered pixel is darker. [`Coverage::Connected`] adds whole pixels after the mean.
+/// A pixel counts as drawn if any of its samples was drawn. Samples without a fragment have the background's colour, so
+/// a partly covered pixel is darker. [`Coverage::Connected`] adds whole pixels after the mean.
 #[derive(Debug)]
 pub struct Supersampled<R> {
     inner: R,
     factor: u32,
-    /// Large images that are not in use.
+    /// Images with several samples per pixel that are not in use at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
@@ -31,7 +31,7 @@ impl<R: SliceRenderer> Supersampled<R> {
         Ok(Self { inner, factor: samples.isqrt(), scratch: Mutex::new(Vec::new()) })
     }
 
-    /// Computes the mean of every pixel with at least one sample.
+    /// Computes the mean of the samples of every pixel with at least one drawn sample.
     fn resolve(&self, large: &SliceImage, image: &mut SliceImage) {
         let [width, height] = image.size();
         let samples = self.factor * self.factor;
@@ -61,7 +61,7 @@ impl<R: SliceRenderer> Supersampled<R> {
         self.places(x, y).any(|(sx, sy)| large.is_marked(sx, sy))
     }
 
-    /// Returns columns and rows of a pixel's samples.
+    /// Returns column and row of each sample of a pixel, in the large image.
     fn places(&self, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> + use<R> {
         let factor = self.factor;
         (0..factor * factor).map(move |i| (x * factor + i % factor, y * factor + i / factor))

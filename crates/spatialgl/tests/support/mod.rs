@@ -13,11 +13,11 @@ pub(crate) const T4: Triangle = [[-100.3, -80.2, -30.6], [120.4, -60.7, 40.3], [
 pub(crate) const T5: Triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];
 pub(crate) const T8: Triangle = [[0.1, -20.0, 5.0], [0.3, -20.0, 6.0], [0.2, 20.0, 5.5]];
 
-/// Case 9's eye and shear.
+/// The eye and shear of case 9 in the specification.
 pub(crate) const ASIDE: Projection =
     Projection::Perspective { eye: [100.0, -150.0], distance: 1536.0, shear: [0.05, 0.1] };
 
-/// Returns a recording of white triangles.
+/// Returns a recording of draw calls for white triangles.
 pub(crate) fn recording(triangles: &[Triangle]) -> CommandBuffer {
     let vertices = triangles.iter().flatten().map(|p| Vertex::new(DVec3::from_array(*p), [255; 3])).collect();
     let buffer = VertexBuffer::new(vertices).expect("finite");
@@ -30,7 +30,8 @@ pub(crate) fn swept(clip: SliceClip, projection: Projection) -> SweptDisplay {
     SweptDisplay::new(SweptConfig::perspecta(clip, projection)).expect("valid")
 }
 
-/// Keeps only the first half of the slices, which are all distinct slices without jitter.
+/// Returns the configuration in which only the first half of the slices is drawn. Without jitter, the other half shows
+/// the same slices mirrored.
 pub(crate) fn half(config: VolumeConfig) -> VolumeConfig {
     VolumeConfig { strobes: Strobes::Mirror, ..config }
 }
@@ -50,7 +51,7 @@ pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, confi
 }
 
 /// Returns the number of fragments in slices 0 to 197 without bins, and the number of slices that are not empty. Only
-/// the fast path is used. Tests that compare with the reference model at full size call [`both`].
+/// the fast rasterizer is used. Tests that compare with the reference model at full size call [`both`].
 pub(crate) fn fragments(triangles: &[Triangle], clip: SliceClip, projection: Projection) -> (u64, u64) {
     let frame = volume(&swept(clip, projection), &recording(triangles), &half(VolumeConfig::plain()));
     (frame.stats.fragments_accepted, frame.stats.slices_rendered - frame.stats.slices_empty)
