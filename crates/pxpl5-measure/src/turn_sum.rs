@@ -1,10 +1,10 @@
-//! Latency from a rotation of the head to light, over all fields of the window.
+//! Latency from a rotation of the head until the middle pixel is lit, over all fields of the window.
 
 use pxpl5_run::{FinalResults, RotationLatency, Samples, Statistics};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// One part of the latency of rotation.
+/// One part of the rotation latency.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RotationPart {
     /// Name of the part, as in [`RotationLatency`](pxpl5_run::RotationLatency).
@@ -18,7 +18,7 @@ pub struct RotationPart {
 #[derive(Debug, Default)]
 pub(crate) struct RotationLatencySum {
     next: PeriodNumber,
-    /// First period of the result window, as far as known.
+    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     total: Samples,
     parts: Vec<Samples>,
