@@ -1,4 +1,4 @@
-//! Division of a picture's latency into parts, which add up to the latency to the picosecond.
+//! Division of a picture's latency into parts. The parts add up to the latency to the picosecond.
 //!
 //! The parts follow the last eye, because the last eye decides when the picture can be shown. Each part begins at the
 //! end of the part before. A stage that overlaps an earlier stage counts only from the end of the earlier stage. Parts
@@ -10,14 +10,14 @@ use pxpl5_machine::{Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 
-/// Definition of one part of the time from the tracker's sample to light.
+/// Definition of one part of the time from the sample of the head's pose until the picture is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
     /// Name of the part in tables, files and timelines.
     pub name: &'static str,
-    /// Start and end of the part, in words.
+    /// Text that defines the start and the end of the part.
     pub definition: &'static str,
-    /// True if the part belongs to the latency that the papers state.
+    /// True if the latency stated in the papers includes this part.
     pub published: bool,
 }
 
@@ -50,20 +50,20 @@ const fn part(name: &'static str, definition: &'static str, published: bool) -> 
 pub struct LatencyParts {
     /// Picture to which the latency belongs.
     pub picture: PictureNumber,
-    /// Time at which the pose was sampled. If this time is unknown, the start of TRANSFORM.
+    /// Time at which the pose was sampled, or the start of TRANSFORM if the sample time is unknown.
     pub begin: Time,
     /// Duration of each part of [`LATENCY_PARTS`], in the same order. The sum is the latency.
     pub spans: [Span; LATENCY_PARTS.len()],
 }
 
 impl LatencyParts {
-    /// Returns the time at which the first pixel lights.
+    /// Returns the time at which the first pixel is lit.
     #[must_use]
     pub fn end(&self) -> Time {
         self.begin + self.spans.iter().copied().sum::<Span>()
     }
 
-    /// Returns the latency that the papers state, from the start of TRANSFORM to the retrace.
+    /// Returns the latency as defined in the papers, from the start of TRANSFORM to the retrace.
     #[must_use]
     pub fn published(&self) -> Span {
         LATENCY_PARTS.iter().zip(self.spans).filter(|(part, _)| part.published).map(|(_, span)| span).sum()
@@ -101,13 +101,14 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     LatencyParts { picture, begin, spans }
 }
 
-/// Returns the time at which the first visible pixel lights in the period that contains an instant.
+/// Returns the time at which the first visible pixel is lit in the period that contains an instant.
 fn first_light(record: &Record, shown_at: Time) -> Time {
     let display = record.display();
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap and the light.
+/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap, and the lighting of the first
+/// pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],
@@ -116,7 +117,7 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// Surfaces that begin and end a latency: the first surface, the second surface, or from the first to the second.
+/// Surface whose begin starts a latency, and surface whose event ends it: two single surfaces, and the pair.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
 /// Function that returns the time of the event that ends a surface's latency.
@@ -170,7 +171,7 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND begins with the sample of this picture. Then SEND has the same picture numbers as the other
+/// Returns true if a SEND stage begins at the sample time of this picture. If so, SEND counts pictures like the other
 /// stages.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
