@@ -107,8 +107,8 @@ pub mod looks {
     pub use pxpl5_ring::{ChannelSnapshot, WaitReason, WaitingMessage};
 }
 
-/// Types for writing a pipeline of your own: firmware on graphics processors, display lists, commands for renderers,
-/// and messages on the ring.
+/// Types for writing a pipeline: firmware on graphics processors, display lists, commands for renderers, and messages
+/// on the ring.
 pub mod firmware {
     pub use pphigs::{
         DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
