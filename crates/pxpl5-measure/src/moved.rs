@@ -56,7 +56,9 @@ pub(crate) fn moved(
     last
 }
 
-/// Returns the content that moves to a screen position, and its position in the picture. Otherwise, `reason` is set.
+/// Returns the content that moves to a screen position, and its position in the picture.
+///
+/// Returns `None` if there is no such content. `reason` then states why.
 fn source(
     judge: &Evaluator,
     by: Warp,

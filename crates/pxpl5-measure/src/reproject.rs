@@ -152,8 +152,8 @@ mod tests {
         }
     }
 
-    /// Under a turn to the left by `a`, column `x` (counted from the middle) shows the source column `f tan(atan(x / f)
-    /// - a)`.
+    /// Under a turn to the left by angle a, column x (counted from the middle) shows the source column `f tan(atan(x /
+    /// f) - a)`.
     #[test]
     fn under_a_turn_columns_come_from_where_the_tangents_say() {
         let view = HmdView::ntsc();

@@ -21,7 +21,7 @@ const INTERVAL_FIELDS: u64 = 60;
 pub(crate) struct Preparation {
     /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times itself.
     pub(crate) rehearsal: Option<SeenTimes>,
-    /// Head with a tuned predictor. `None` if there is nothing to tune.
+    /// Head with a tuned predictor. `None` if the predictor needs no tuning.
     pub(crate) head: Option<Arc<Head>>,
 }
 

@@ -32,8 +32,10 @@ impl Updates {
         Self { by_picture: host_samples(run), received }
     }
 
-    /// Returns the update that a picture shows. If the picture has no update of its own, this is the last update that
-    /// had reached the graphics processor when the picture began.
+    /// Returns the update that a picture shows.
+    ///
+    /// If the host does not sample a pose for each picture, this is the last update that had reached the graphics
+    /// processor when the picture's pose was sampled.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);

@@ -11,7 +11,7 @@ pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     all
 }
 
-/// A kind of board: its name, the singular and plural of its boards, and further values with their labels.
+/// A kind of board: its title, the report keys of its shares, and the keys and labels of further shares.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [
