@@ -406,7 +406,7 @@ impl Machine {
                 }
                 self.deliver(now, message);
             }
-            // Tell the sender that its message was accepted.
+            // Inform the sender that its message was accepted.
             RingOutput::Sent { source, ticket } => {
                 record.hash.record(now, &[3, u64::from(source.0), ticket]);
                 match record.ports.renderers.binary_search(&source) {
@@ -464,7 +464,7 @@ impl Machine {
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }
-        // Record the marks of its programs.
+        // Record the time stamps that its programs have set.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
             hash.record(mark.time, &mark_facts(&mark));

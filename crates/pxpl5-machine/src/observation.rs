@@ -106,7 +106,7 @@ impl Observation {
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
-        // Stages that programs have marked.
+        // Stages for which programs have set time stamps.
         for mark in &self.marks {
             let fresh = StageSpan {
                 picture: mark.picture,
@@ -121,7 +121,7 @@ impl Observation {
                 StageEdge::End => span.end = span.end.max(Some(mark.time)),
             }
         }
-        // COPY, which no program marks.
+        // COPY, for which no program sets time stamps.
         for arrival in &self.arrivals {
             let picture = arrival.target.picture;
             let surface = Some(arrival.surface);
@@ -193,7 +193,8 @@ impl Observation {
             last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
         }
         self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
-        // Keep capacity for twice the held records: a run that discards regularly needs the space again soon.
+        // Keep capacity for twice the records in memory, because a run that discards regularly soon needs the space
+        // again.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
         self.drawn.shrink_to(2 * self.drawn.len());
@@ -317,7 +318,7 @@ mod tests {
         for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {
             assert!((200..1_000).contains(&capacity), "{capacity}");
         }
-        // Kept are the swaps from time 900 on, and the last swap of each eye before it.
+        // The swaps from time 900 on are kept, and the last swap of each eye before time 900.
         let of = |surface| observation.swaps_of(surface).map(|swap| swap.tick.0).collect::<Vec<_>>();
         assert_eq!(of(EYES[0])[..2], [8, 10]);
         assert_eq!(of(EYES[1])[..3], [7, 9, 11]);

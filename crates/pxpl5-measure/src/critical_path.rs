@@ -110,7 +110,7 @@ const NAMED_ALONE: f64 = 0.75;
 impl fmt::Display for PathPart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {:.0} % of the latency", self.resource.about(), self.share * 100.0)?;
-        // A machine has one display and one ring; their names say nothing.
+        // A machine usually has one display and one ring, so their names give no information.
         let is_shared = matches!(self.resource, Resource::Ports | Resource::Retrace | Resource::Ring);
         let is_of_one = !is_shared && self.share_of_board.is_some_and(|share| share >= NAMED_ALONE);
         match &self.board {

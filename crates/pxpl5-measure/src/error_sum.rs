@@ -188,7 +188,8 @@ impl Evaluation {
         let mut centre = None;
         // Evaluate every pixel of the grid.
         for (i, (x, y, at)) in pixels.into_iter().enumerate() {
-            // What is lit was chosen when the pixel began to shine; where it is seen counts at the centre of its light.
+            // The pixel's content is fixed when the pixel begins to shine. Its position is evaluated at the middle of
+            // the time in which it shines.
             let pixel = Pixel { place: [x, y], begins: at, light: at + light.centre() };
             let error = match &self.content {
                 Content::Reprojected(reprojector) => self.moved_error(run, reprojector, field, pixel, collected),
@@ -247,7 +248,8 @@ impl Evaluation {
     fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
         let place = middle(pixel.place[0], pixel.place[1]);
         if matches!(self.content, Content::DelayedVideo) {
-            // The camera moves with the head, and its picture is shown with the one that was drawn for the same measurement.
+            // The camera moves with the head. Its picture is shown with the picture that was drawn for the same
+            // measurement of the head.
             let moment = self.judge.moment(drawn);
             let content = self.judge.content(drawn, place);
             return self.judge.error_between(place, &content, moment.measured_at?, moment.objects_at);

@@ -87,7 +87,7 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
             pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));
         }
     }
-    // Not every scan goes from the top; the middle stays in the middle.
+    // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
     pixels.sort_by_key(|(_, _, at)| *at);
     pixels
 }

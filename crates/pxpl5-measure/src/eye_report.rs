@@ -60,7 +60,8 @@ impl EyeSum {
     /// Returns empty sums that keep up to `limit` values of each kind. `smears` is true if pixels are lit for more than
     /// an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
-        // The limit is the same in every run: numbers beyond it are summed up in another way, which shows in the last digit of a mean.
+        // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
+        // last digit of a mean.
         let limit = limit.min(KEPT_SAMPLES);
         let smear = smears.then(|| Distribution::keeping(limit));
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
@@ -71,7 +72,7 @@ impl EyeSum {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
 
-    /// Adds the time from the measurement of a pose to the light of a pixel.
+    /// Adds the time from the measurement of a pose until a pixel is lit.
     pub(crate) fn pose(&mut self, measured_at: Option<Time>, light: Time) {
         if let Some(measured_at) = measured_at {
             self.age_ms.push((light.0 as f64 - measured_at.0 as f64) * 1e-9);

@@ -55,9 +55,9 @@ pub struct SurfaceStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Returns the latencies of both surfaces and of the pair over the complete pictures in the window.
+/// Returns the latencies of both surfaces and of the pair over the complete pictures in the result window.
 ///
-/// The result is empty if the surfaces have no TRANSFORM of their own.
+/// The result is empty if the surfaces share one TRANSFORM.
 #[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let labels: Vec<&str> = outcome.record().surfaces().map(|(_, surface)| surface.label).collect();

@@ -68,7 +68,7 @@ fn source(
     reason: &mut Moved,
 ) -> Option<(Content, DVec2)> {
     let moment = judge.moment(drawn);
-    // Faces are several pictures, each with a depth of its own: of them the turn alone is left to a device.
+    // Cube faces are several pictures, each with its own depth. For them, a device corrects only the rotation.
     if by == Warp::Depth && !matches!(drawn, Drawn::Faces(_)) {
         return match judge.warped(&moment, now, target) {
             Warped::Seen(content, source) => Some((content, source)),

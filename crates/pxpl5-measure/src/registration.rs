@@ -68,7 +68,7 @@ impl Evaluator {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
             Drawn::AdvancedMotion(moment, shift) => self.met(moment, place - *shift),
-            // Find by iteration the content that interpolation moves to this place.
+            // Find by iteration the content that interpolation moves to this position.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
                 let mut guess = place;

@@ -76,9 +76,9 @@ pub struct Report {
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.
     ///
-    /// Empty if the eyes have no TRANSFORM of their own.
+    /// Empty if the eyes share one TRANSFORM.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
-    /// Number of complete pictures shown in the whole run, including warm-up.
+    /// Number of complete pictures shown in the whole run, including start-up.
     pub shown: u64,
     /// Number of complete new pictures per second within the window. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
@@ -257,7 +257,7 @@ impl Report {
             late_regions: tally.late_regions as usize,
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
-            // Parts that only some runs have.
+            // Results that only some runs have.
             head,
             eye: eye.flatten(),
             arp: FacesReport::of(outcome),

@@ -69,7 +69,7 @@ pub(crate) fn fill_row(
             empty += 1;
             continue;
         };
-        // Of an interlaced picture only the rows of its field are there: the nearest of them.
+        // An interlaced picture has only the rows of its field. Take the nearest of these rows.
         let row =
             if distance == 1 { from.y as u32 } else { nearest_row(from.y, (first_row, distance), source.height()) };
         let at = (row as usize * source.width() as usize + from.x as usize) * 3;
@@ -100,7 +100,7 @@ pub(crate) fn move_row(
             fill_row(source, rows, (y, xs), |x| Some(DVec2::new(from.x + f64::from(x), from.y)), out)
         }
         Move::Turn(turn) => {
-            // Along a row the direction goes straight on, so that a pixel costs one division.
+            // Along a row, the direction changes by a constant step, so each pixel costs only one division.
             let ray = *turn * direction(view, begin);
             let step = *turn * (DVec3::X / view.focal_px());
             let (centre, focal) = (view.centre_px(), view.focal_px());
@@ -172,7 +172,7 @@ mod tests {
                 counted += 1;
             }
         }
-        // The middle row has as many empty columns as the tangents leave out; rows beside it at least as many.
+        // The middle row has as many empty columns as the tangents leave out. All other rows have at least as many.
         assert!(counted > 20 && empty >= counted * 480, "{counted} {empty}");
     }
 

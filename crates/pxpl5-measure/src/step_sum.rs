@@ -65,7 +65,8 @@ impl OfMemory {
     /// Adds the latency of the memory's content at the middle of a field.
     fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
-        // The measurement is looked up once: a long run gives up the views of updates that it shows for many fields.
+        // The measurement is looked up once for each update, because a long run may discard the view of an update that
+        // is shown for many fields.
         let begin = match self.begin {
             Some((from, begin)) if from == shown.from => begin,
             _ => measured_at(run, shown).unwrap_or(due),

@@ -168,7 +168,7 @@ impl<'a> Trail<'a> {
                 _ => {}
             }
         }
-        // A stage that has not ended is waited for all the same.
+        // A picture can also wait for a stage that has not ended.
         let still = open.into_iter().map(|((node, picture, surface, stage), begin)| {
             let end = Time(u64::MAX);
             StageWork { node, picture, surface, stage, begin, end }
@@ -224,13 +224,13 @@ impl<'a> Trail<'a> {
         let by_port = self
             .arrival_before(place, begin + NEAR, |before| before.target.frame_buffer == arrival.target.frame_buffer);
         let Some(place_drawn) = drawn else { return self.to_arrival(way, by_port) };
-        // A port that was free for a moment only is what limits: a region that had come sooner would have waited for it.
+        // A port that was free only for a moment is the limit: a region that had come earlier would have waited for it.
         let slack = Span(arrival.last_part_at.since(begin).0 / SLACK);
         if by_port.is_some_and(|before| self.arrivals[before].last_part_at + slack >= begin) {
             return self.to_arrival(way, by_port);
         }
         let (renderer, region) = self.drawn[place_drawn];
-        // It has waited for its port, or for the transfer before it, if its copy command did not just start.
+        // If the copy command started long before, the region has waited for its port, or for the previous transfer.
         if begin > region.copy_at + self.store * 2 + NEAR {
             let by_renderer = self.arrival_before(place, begin + NEAR, |before| {
                 let of = self.drawn_for(&before.target, begin);
@@ -308,7 +308,7 @@ impl<'a> Trail<'a> {
     /// Returns the index of the last wanted arrival that precedes arrival `place` and had ended by the instant `by`.
     fn arrival_before(&self, place: usize, by: Time, is_wanted: impl Fn(&Arrival) -> bool) -> Option<usize> {
         let end = self.arrivals_by(by).min(place);
-        // Those far back are no cause.
+        // Arrivals far back in time are not the cause.
         let first = end.saturating_sub(512);
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
@@ -329,7 +329,8 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Renderers, board, Time(region.finished_at.0 - executed.0), || {
             format!("RENDER of region {number} on renderer {renderer}")
         });
-        // In the rest the renderer waited for commands: of a graphics processor that transforms, else of tokens and messages.
+        // In the remaining time, the renderer waited for commands. Either a graphics processor was in TRANSFORM, or
+        // tokens and messages were on their way.
         let transform = self.transform_beside(picture, surface, begin, way.cursor);
         let transformed = Time(way.cursor.0.saturating_sub(transform.0)).max(begin);
         way.charge(Resource::Transform, None, transformed, || format!("TRANSFORM for region {number}"));
@@ -411,7 +412,7 @@ impl<'a> Trail<'a> {
         if let Some(own) = own.filter(|own| self.stages[*own].end + NEAR >= by) {
             return At::Stage(own);
         }
-        // The latest of all that the rules of a pipeline can wait for.
+        // Find the latest end among all the work that a pipeline's rules can wait for.
         let stage = self.stages[..place].iter().rposition(|before| before.end <= by);
         let arrival = self.arrivals_by(by).checked_sub(1);
         let render = self.render_ends.partition_point(|(end, ..)| *end <= by).checked_sub(1);

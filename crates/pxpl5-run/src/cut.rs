@@ -130,7 +130,7 @@ impl Pieces {
         Ok(())
     }
 
-    /// Adds a structure with the given primitives. All other properties are those of `like`.
+    /// Adds a structure with the given primitives. All other properties are copied from the structure `like`.
     fn add(&mut self, like: &Structure, vertices: &[Vertex], triangles: &[[u32; 3]], spheres: &[Sphere]) {
         let first = self.parts.vertices.len() as u32;
         let structure = Structure {

@@ -32,8 +32,8 @@ impl FaceHistory {
         Self::held(outcome.record(), outcome.face_notes())
     }
 
-    /// Returns the history from the records of a run that may not have ended. Returns `None` if the run's display does
-    /// not accept cube faces.
+    /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
+    /// display does not accept cube faces.
     #[must_use]
     pub fn held(record: &Record, notes: &RequestedUpdates) -> Option<Self> {
         let display = display(record)?;
@@ -87,8 +87,8 @@ impl OrientationTiming {
         Self::of_run(&outcome.settled())
     }
 
-    /// Returns the orientation timing of a run that may not have ended. Returns `None` if the run's display does not
-    /// accept cube faces.
+    /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
+    /// does not accept cube faces.
     #[must_use]
     pub fn of_run(settled: &FinalResults<'_>) -> Option<Self> {
         let link = settled.record.config().host.link_span(ORIENTATION_WORDS);

@@ -26,7 +26,7 @@ impl Outcome {
     }
 }
 
-/// Returns the ideal picture of an experiment that may not have ended.
+/// Returns the ideal picture of an experiment that has ended or is in progress.
 pub(crate) fn ideal_picture(
     experiment: &Experiment,
     record: &Record,

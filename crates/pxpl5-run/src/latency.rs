@@ -76,7 +76,7 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     let light = first_light(record, shown_at);
     let last = last_surface(stages);
     let first = last.map(|_| SurfaceId(0));
-    // Each entry holds the end of a part and the limit that this end cannot pass.
+    // Each entry holds the end of a part, and the latest time that this end can have.
     let ends = [
         (end_of(stages, Stage::Send, None).filter(|_| sent_for_it(stages, sampled_at)), transform_at),
         (begin_of(stages, Stage::Edit, None), transform_at),
@@ -130,8 +130,8 @@ pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
 ];
 
-/// Returns the times of a stereo frame, or `None` if a surface has no TRANSFORM or COPY of its own. `stages` must
-/// contain the stages of this picture only.
+/// Returns the times of a stereo frame, or `None` if a surface has no separate TRANSFORM or COPY. `stages` must contain
+/// only the stages of this picture.
 pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Option<Pair> {
     let [Some(first), Some(second)] = [SurfaceId(0), SurfaceId(1)].map(|surface| own_times(stages, surface)) else {
         return None;
@@ -144,7 +144,7 @@ pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Opt
     })
 }
 
-/// Returns the start of a surface's own TRANSFORM and the end of its own COPY.
+/// Returns the start of a surface's separate TRANSFORM and the end of its separate COPY.
 fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     let own = || stages.iter().filter(|span| span.surface == Some(surface));
     let transform_at = own().filter(|span| span.stage == Stage::Transform).map(|span| span.begin).min()?;
@@ -166,7 +166,7 @@ fn end_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> Opt
     spans_of(stages, stage, surface).filter_map(|span| span.end).max()
 }
 
-/// Returns the last surface that has a TRANSFORM of its own.
+/// Returns the last surface that has a separate TRANSFORM.
 fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }

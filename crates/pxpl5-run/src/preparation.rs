@@ -82,7 +82,7 @@ impl Experiment {
         let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
-        // A run with few pictures is also preceded by a dry run with few pictures.
+        // If the run has few pictures, the dry run before it has few pictures too.
         let outcome = match plain.perform(Preparation::default(), &[], |_, _| Ok(())) {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,
             run => run?,

@@ -51,7 +51,7 @@ pub struct Stepper {
 
 impl Stepper {
     pub(crate) fn begin(experiment: &Experiment, preparation: Preparation) -> Result<Self, ExperimentError> {
-        // The time on the host includes the building of the machine.
+        // The real time on the host includes the time for building the machine.
         let begun_s = experiment.host.seconds();
         let run = experiment.assemble(preparation.clone())?;
         let window = Window::new(experiment, run.machine.record());

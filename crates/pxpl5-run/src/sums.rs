@@ -44,7 +44,7 @@ pub struct FinalResults<'a> {
     /// Largest number of samples of each kind that are kept individually: see
     /// [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Result window, as far as it is known. `None` if the run has no window.
+    /// Currently known result window. `None` if the run has no window.
     ///
     /// The begin of the window may still move to a later period. Then all data that the observer received before lies
     /// outside the window.

@@ -162,7 +162,7 @@ impl Tally {
         if steady.is_empty() {
             return;
         }
-        // Copies and stages of all pictures in the window count; latencies count for complete pictures only.
+        // All pictures in the window count for copies and stages. Only complete pictures count for latencies.
         let stages = record.stages();
         self.take_copies(pipeline, record, &steady);
         let complete = steady.iter().filter(|times| times.is_shown());

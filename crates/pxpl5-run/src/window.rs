@@ -82,7 +82,7 @@ impl Window {
             run.discard_before(begin, of_head);
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
-        // The next pass begins when the number of records has doubled, so the cost a record is bounded.
+        // The next pass begins when the number of records has doubled, so the cost per record is bounded.
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 

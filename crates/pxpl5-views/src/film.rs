@@ -16,7 +16,7 @@ use thiserror::Error;
 /// Surfaces of the first display that a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmSurfaces {
-    /// A single surface, such as that of an eye.
+    /// A single surface, such as the surface of one eye.
     One(SurfaceId),
     /// All surfaces side by side, the first one on the left.
     All,

@@ -43,7 +43,7 @@ impl Updates {
         // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
-        // The record tells later which update each swap has shown.
+        // From this record, later code finds the update that each swap has shown.
         self.notes.write(RequestedUpdate {
             picture: number,
             view: view.number,

@@ -233,7 +233,7 @@ fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, ConfigEr
         .ok_or_else(|| ConfigError::Board(format!("faces need the display arp, found {}", record.display().name())))
 }
 
-/// Returns the projection of a cube face with its guard texels. The near and far planes are those of the head-mounted
+/// Returns the projection of a cube face with its guard texels. The near and far planes come from the head-mounted
 /// display.
 fn projection(display: &ArpConfig) -> Mat4 {
     let geometry = display.geometry();
@@ -292,7 +292,7 @@ impl Pipeline for FacePipeline {
         if self.source == FaceSource::Ideal {
             settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
         }
-        // The key for the lens is absent without a lens, so that names of older experiments stay valid.
+        // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
         settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));

@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels. It draws each strip of a picture for the instant at which the strip is
-/// displayed (JITP).
+/// The pipeline of just-in-time pixels (JITP). It divides a picture into strips of lines and draws each strip for the
+/// instant at which the strip is displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
@@ -199,7 +199,7 @@ impl Pipeline for Jitp {
                 *middle_at = (*middle_at).max(Some(arrival.last_part_at));
             }
         }
-        // The middle line represents the picture: its scan is the time at which the picture is shown.
+        // The middle line defines the picture's times: the picture is shown when the middle line is scanned.
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
@@ -253,7 +253,7 @@ impl Pipeline for Jitp {
         Some(match self.viewpoint {
             Viewpoint::Field => Source::View(view(0)),
             Viewpoint::Strip => Source::View(view(strip)),
-            // Two views of a field are interpolated by the place of the strip.
+            // Two views of a field are interpolated by the position of the strip.
             Viewpoint::Dual(reading) => Source::Between {
                 from: view(0),
                 to: view(1),

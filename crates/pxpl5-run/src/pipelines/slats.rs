@@ -69,7 +69,7 @@ impl SlatsLighting {
 pub struct Slats {
     /// Schedule by which regions are copied.
     pub copy: CopySchedule,
-    /// Rule that selects the regions to which a clump (a small group of triangles) is sent.
+    /// Rule that selects the regions to which a clump (a group of at most 30 triangles) is sent.
     pub binning: RegionBinning,
     /// Source of vertex colours.
     pub lighting: SlatsLighting,
@@ -201,7 +201,7 @@ impl Pipeline for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
-        // The first GP's samples mark the begin of each picture.
+        // The first GP samples a pose at the begin of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {

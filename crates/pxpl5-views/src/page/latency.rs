@@ -92,7 +92,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
     // Reports of older versions have no aim.
     let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
-    // One table has the stages from head to light, and one has the errors.
+    // One table has the stages from the head's pose until the picture is lit, and one has the errors.
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![

@@ -25,7 +25,7 @@ impl Timeline {
         Self::so_far(&outcome.so_far(), options)
     }
 
-    /// Returns a timeline of the selected part of a run that may not have ended.
+    /// Returns a timeline of the selected part of a run that has ended or is in progress.
     #[must_use]
     pub fn so_far(run: &SoFar<'_>, options: &TimelineOptions) -> Self {
         let record = run.record();

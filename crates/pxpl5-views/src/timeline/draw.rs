@@ -181,7 +181,7 @@ impl<'a> Drawing<'a> {
         let class = format!("{stage} {stage}-{} {emphasis}", pattern(bar.surface));
         let about = hint(about(bar, self.timeline));
         self.out.add_line(&rectangle(&class, [x, y, width, Units::whole(LANE)]).child(&about));
-        // A dark strip at the foot of a COPY shows when data arrives.
+        // A narrow dark bar at the foot of a COPY shows when data arrives.
         for (begin, end) in &bar.receiving {
             let x = self.x(*begin);
             let strip = [x, y + Units::whole(LANE - STRIP), self.x(*end) - x, Units::whole(STRIP)];
@@ -209,7 +209,7 @@ impl<'a> Drawing<'a> {
         if room < short {
             return;
         }
-        // The label moves up to make room for the strip.
+        // The label moves up to make room for this narrow bar.
         let strip = if bar.receiving.is_empty() { 0 } else { STRIP / 2 };
         let place = [Units(begin.midpoint(end)), y + Units::whole(LANE / 2 + 5 - strip)];
         let mut label = caption(&format!("label {}-text", class_of(bar.stage)), place).text(letters);

@@ -48,7 +48,7 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     draw::document(&Timeline::of(outcome, options), &words)
 }
 
-/// Draws a run that may not have ended, without title and texts.
+/// Draws a run that has ended or is in progress, without title and texts.
 #[must_use]
 pub fn drawing(run: &SoFar<'_>, options: &TimelineOptions) -> String {
     let title = options.title.clone().unwrap_or_default();
