@@ -17,8 +17,8 @@ pub enum Optimization {
     /// MHz clock. Renderers and frame buffers never poll. The duration of a renderer's command does not depend on data,
     /// so the end of the command is known when the command arrives.
     IdleBoards,
-    /// The ring computes the end of a message when it grants the channel. If disabled, every word of every channel is
-    /// an event.
+    /// The ring computes the end of a message when it grants the channel. If disabled, every word on every channel
+    /// causes an event.
     Transfers,
     /// A region without primitives is drawn once. Its pixels are reused while the region's other commands stay the
     /// same.

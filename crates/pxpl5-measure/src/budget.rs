@@ -58,7 +58,7 @@ impl Budget {
     }
 }
 
-/// Sums of the stages over complete pictures in the window that have a measured pose, in milliseconds.
+/// Sums of the stages over complete pictures in the result window that have a measured pose, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.

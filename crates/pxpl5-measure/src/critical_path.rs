@@ -31,7 +31,8 @@ pub struct PathPart {
 /// The chain of waits of the last complete pictures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
-    /// Number of pictures that were followed: the last complete ones of the window, at most [`PICTURES_FOLLOWED`].
+    /// Number of pictures that were followed: the last complete ones of the result window, at most
+    /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
     /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
     pub latency_ms: f64,

@@ -33,7 +33,7 @@ pub struct FacesReport {
 /// Results of one display memory in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates shown per second within the window. `None` if fewer than two updates were shown.
+    /// Updates shown per second within the result window. `None` if fewer than two updates were shown.
     pub updates_hz: Option<f64>,
     /// Mean number of display periods between consecutive updates. `None` if fewer than two updates were shown.
     pub period_frames: Option<f64>,

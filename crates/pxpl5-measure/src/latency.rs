@@ -3,13 +3,14 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of each complete picture in the window whose records are in memory ([`pxpl5_run::Keep`]).
+/// Returns the latency parts of each complete picture in the result window whose records are in memory
+/// ([`pxpl5_run::Keep`]).
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
 
-/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the window.
+/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the result window.
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
     let named = parts.map(|(part, ms): (_, &Samples)| LatencyPartStatistics {

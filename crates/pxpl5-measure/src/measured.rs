@@ -14,7 +14,7 @@ pub trait Measured {
     /// Returns all results as numbers.
     fn report(&self) -> Report;
 
-    /// Returns the latency parts of each complete picture in the window whose records are in memory.
+    /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
     /// Returns the latencies of both eyes and of the pair. Empty if the eyes share one TRANSFORM.

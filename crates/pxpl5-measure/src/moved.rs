@@ -15,7 +15,7 @@ use tracking::view::HmdView;
 /// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Moved {
-    /// Content of a picture, with the pose that the picture was drawn for.
+    /// Content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
     /// No content, because this position of the picture shows nothing or no complete picture.
     NotComplete(Seen),

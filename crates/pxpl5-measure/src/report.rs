@@ -64,7 +64,7 @@ pub struct Report {
     ///
     /// `None` if the run ended before the window of these periods began.
     pub window: Option<ResultWindow>,
-    /// Number of complete pictures in the window. The statistics are computed over these pictures.
+    /// Number of complete pictures in the result window. The statistics are computed over these pictures.
     pub pictures: usize,
     /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
@@ -80,9 +80,9 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including start-up.
     pub shown: u64,
-    /// Number of complete new pictures per second within the window. `None` if fewer than two were shown.
+    /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
-    /// Number of pictures due in the window, by result. `None` if no picture was due.
+    /// Number of pictures due in the result window, by result. `None` if no picture was due.
     pub due: Option<DuePictures>,
     /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
     /// count.

@@ -16,7 +16,7 @@ pub(crate) struct Screen {
 /// Arrivals of regions in one buffer, with one division of the screen into regions. Sorted by region and time.
 #[derive(Debug)]
 struct Cut {
-    /// Target of the first arrival. Its region and picture are ignored.
+    /// Copy target of the first arrival. The region and the picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }

@@ -21,7 +21,7 @@ pub(crate) enum Seen {
     Incomplete,
     /// The pixel belongs to a complete picture that was shown before the window.
     Before,
-    /// The pixel belongs to a picture shown within the window, complete and in time.
+    /// The pixel belongs to a picture shown within the result window, complete and in time.
     Complete(Drawn),
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Shown {
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures added so far.
     pictures: usize,
-    /// The result window. Pictures outside the window are not evaluated.
+    /// The result window. Pictures outside the result window are not evaluated.
     ///
     /// `None` for pipelines without due pictures. All their pictures are evaluated, each until the next picture covers
     /// it.

@@ -1,4 +1,4 @@
-//! Latency from a step of the head's position until the content of each display memory is lit.
+//! Latency from a step (translation) of the head until the content of each display memory is lit.
 
 use address_recalculation::{AddressRecalculationPipeline, Scan};
 use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
@@ -26,7 +26,7 @@ struct OfMemory {
     parts: [f64; PARTS.len()],
 }
 
-/// The latencies of a step of the head in the content of one display memory.
+/// Latencies from a step (translation) of the head until the content of one display memory is lit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
     /// Latency over all periods since the first update, in milliseconds. `None` before the first update.

@@ -300,7 +300,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the index of the last drawing for a target whose copy command had started by the instant `by`.
+    /// Returns the index of the last drawn region for a target, among the regions whose copy command had started by
+    /// `by`.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
@@ -313,7 +314,7 @@ impl<'a> Trail<'a> {
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
 
-    /// Assigns the time of a region's commands. Returns the work whose end let them begin.
+    /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
     ///
     /// This work is the previous region on the same renderer, or the begin of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {

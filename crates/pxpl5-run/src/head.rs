@@ -151,8 +151,8 @@ impl Head {
         Ok(Self { judge_at_m: Some(metres), ..self })
     }
 
-    /// Returns the distance at which pixel errors are evaluated, in metres. `None` stands for the distance of the
-    /// scene's content.
+    /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
+    /// content.
     #[must_use]
     pub const fn judge_at_m(&self) -> Option<f64> {
         self.judge_at_m

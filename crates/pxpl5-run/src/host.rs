@@ -10,9 +10,9 @@ pub trait Host: Debug + Send + Sync {
         None
     }
 
-    /// Returns true if the result is no longer wanted.
+    /// Returns true if the caller no longer wants the result of a run.
     ///
-    /// Runs, including dry runs, call this method from time to time. If it returns true, they end with
+    /// A run, also a dry run, calls this method from time to time. If the method returns true, the run ends with
     /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
     fn is_stopped(&self) -> bool {
         false

@@ -271,7 +271,7 @@ impl Outcome {
         parts.collect()
     }
 
-    /// Returns the summary that all levels of modelling provide, over the pictures in the window.
+    /// Returns the summary that all levels of modelling provide, over the pictures in the result window.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();

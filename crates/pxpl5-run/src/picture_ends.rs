@@ -6,7 +6,7 @@ use pxpl5_wire::PeriodNumber;
 /// the first frames too.
 pub const WARM_UP_PICTURES: usize = 4;
 
-/// The result of a picture that was begun, from best to worst.
+/// The possible results of a picture that was begun, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PictureResult {
     /// The picture was complete and in time.

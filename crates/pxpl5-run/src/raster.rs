@@ -4,7 +4,7 @@ use crate::reprojection::Reprojection;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Correction that a display applies while it scans its frame buffer.
+/// Correction that a display applies to a picture while it scans its frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {

@@ -34,7 +34,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`].
+    /// Like [`Experiment::run`].
     pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
         self.run_stopping(&[], |field, _| {
             progress(field.since(PeriodNumber::FIRST), self.fields);

@@ -1,4 +1,4 @@
-//! Stops of a run, for progress reports and for functions that the caller supplies.
+//! Fields at which a run pauses, to report progress and to call functions that the caller supplies.
 
 use crate::experiment::Experiment;
 use pxpl5_wire::PeriodNumber;

@@ -27,7 +27,7 @@ pub struct Tally {
     pub pictures: u64,
     /// Number of complete pictures that were shown in the whole run, including start-up.
     pub shown: u64,
-    /// Number of complete pictures in the window.
+    /// Number of complete pictures in the result window.
     pub complete: u64,
     /// Number of complete pictures since the last picture that was incomplete or late.
     pub shown_in_a_row: u64,
@@ -36,7 +36,7 @@ pub struct Tally {
     pub latency_ms: Samples,
     /// Samples for each part of [`LATENCY_PARTS`], in the same order.
     pub parts_ms: Vec<Samples>,
-    /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the window.
+    /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the result window.
     pub eye_ms: Samples,
     /// Times from the start of an eye's TRANSFORM to the swap that shows its picture.
     pub eye_swap_ms: Samples,
@@ -44,13 +44,14 @@ pub struct Tally {
     /// included.
     pub eye_retraces: Samples,
     /// Times from the first to the last word of a picture's first copy and of its second copy, for all pictures in the
-    /// window.
+    /// result window.
     pub copy_ms: [Samples; 2],
     /// Times from the start of a picture to the first word of its first copy.
     pub copy_begins_ms: Samples,
-    /// Durations of TRANSFORM and of RENDER, for all pictures in the window.
+    /// Durations of TRANSFORM and of RENDER, for all pictures in the result window.
     pub stage_ms: [(Stage, Samples); 2],
-    /// Number of updates in the window that were shown, by display memory. Memories without updates have no entry.
+    /// Number of updates in the result window that were shown, by display memory. Memories without updates have no
+    /// entry.
     pub memory_updates: BTreeMap<usize, u64>,
     /// Number of regions that arrived after their deadline.
     pub late_regions: u64,

@@ -68,7 +68,8 @@ impl Window {
         Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
     }
 
-    /// Adds final results to the sums and discards their records, if the run may discard records and has many.
+    /// Adds results that can no longer change to the sums, and discards their records. Does nothing if the run has few
+    /// records or must keep all of them.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;

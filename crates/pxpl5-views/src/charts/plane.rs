@@ -1,4 +1,4 @@
-//! Charts of comparisons for a screen: curves, and points with intervals.
+//! Charts for a screen that compare results: curves, and points with confidence intervals.
 
 use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use super::scale::AxisScale;

@@ -21,7 +21,7 @@ pub enum AxisScale {
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     scale: AxisScale,
-    /// Ends of the range. On a logarithmic axis these are exponents of ten, on other axes numbers.
+    /// Ends of the range: exponents of ten on a logarithmic axis, plain values on any other axis.
     pub(super) ends: (f64, f64),
 }
 
