@@ -33,14 +33,14 @@
 //! | [`machine`], [`display`] | the boards and their connections; the interface of displays |
 //! | [`run`] | one experiment: [`Experiment`], [`Pipeline`], [`Head`], [`Registry`]; the outcome is data |
 //! | [`measure`] | evaluation of an outcome: [`Report`], latencies, errors in pixels, pictures |
-//! | [`analytic`] | closed forms, without events |
+//! | [`analytic`] | results of experiments from formulas, without simulated events |
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
 //! | [`oracle`] | ideal pictures: a renderer without parallelism and without time |
 //! | [`views`] | output for people: timelines, traces, tables, charts, report pages, films |
-//! | [`arp`] | a walk through a scene with a display that follows head rotation: policies, tears, warping, figures, pictures |
+//! | [`arp`] | a walk of a viewer through a scene, with a display that follows head rotation: policies, tears, warping, figures, pictures |
 //! | [`volume`] | scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
 //! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head |
-//! | [`firmware`] | types for writing a pipeline of your own |
+//! | [`firmware`] | types for writing a new pipeline |
 //!
 //! Every number of the model has a unit, a provenance (published, derived, assumed) and a source.
 //! [`MachineConfig::parameters`] lists all of them.
@@ -107,8 +107,8 @@ pub mod looks {
     pub use pxpl5_ring::{ChannelSnapshot, WaitReason, WaitingMessage};
 }
 
-/// Types for writing a pipeline of your own: firmware on graphics processors, display lists, commands for renderers,
-/// and messages on the ring.
+/// Types for writing a pipeline: firmware on graphics processors, display lists, commands for renderers, and messages
+/// on the ring.
 pub mod firmware {
     pub use pphigs::{
         DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,

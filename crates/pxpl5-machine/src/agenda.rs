@@ -4,7 +4,7 @@ use crate::event::Event;
 use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::{Context, EventQueue, Phase};
 
-/// Schedules the events that a board has requested for itself.
+/// Schedules the future events that a board has requested for itself.
 pub(crate) fn schedule_own<E, O>(
     queue: &mut EventQueue<Event>,
     context: &mut Context<E, O>,

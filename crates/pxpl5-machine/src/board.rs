@@ -13,7 +13,7 @@ pub enum Board {
     Gp(usize),
     /// A renderer, counted from 0.
     Renderer(usize),
-    /// A display with all its ports, counted from 0.
+    /// A display with all its ring ports. Displays are counted from 0.
     Display(usize),
     /// The ring with its arbiter.
     Ring,
@@ -62,7 +62,7 @@ impl fmt::Display for EventDescription {
 impl FromStr for Board {
     type Err = String;
 
-    /// Parses `host`, `ring`, or one of `gp`, `renderer`, `display` with a number.
+    /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
     fn from_str(text: &str) -> Result<Self, String> {

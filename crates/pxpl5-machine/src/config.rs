@@ -28,22 +28,22 @@ pub struct MachineConfig {
     pub ring: RingTiming,
     /// Times of the graphics processors' work, used where a run does not execute i860 code.
     pub gp: GpTiming,
-    /// i860 code that the graphics processors run at the cycle level. `None` uses the times of `gp` at the cycle level
-    /// too.
+    /// Version of the i860 code that the graphics processors execute at the cycle level. `None` takes the times from
+    /// `gp` instead.
     pub code: Option<CodeVersion>,
-    /// Timing of the i860 core and its memory at the cycle level: clocks of freezes and of DRAM.
+    /// Timing of the i860 core and its memory at the cycle level: clocks of pipeline freezes and of DRAM accesses.
     pub i860: i860::Config,
     /// Timing of the renderers: clocks of commands, FIFO and backing store.
     pub renderer: RendererTiming,
     /// Timing of the host workstation and its link to the ring.
     pub host: HostTiming,
-    /// The displays. The first display is the sync generator, and pipelines draw for it.
+    /// The displays. The first display is the sync generator, and pipelines draw pictures for the first display.
     pub displays: Vec<Box<dyn DisplayConfig>>,
     /// Parameter tables of firmware, each with the prefix of its parameter paths.
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
 }
 
-/// The prefix of a firmware's parameter paths, and a function that returns the table with the papers' values.
+/// The prefix of a parameter table's paths, and a function that returns the table with the values from the papers.
 pub type NamedTable = (&'static str, fn() -> Box<dyn FirmwareTable>);
 
 /// A parameter table of firmware, stored in a [`MachineConfig`].
@@ -91,7 +91,7 @@ pub enum ConfigError {
     /// A number of boards is out of range.
     #[error("{what} must be {} to {}, found {found}", expected.0, expected.1)]
     Value {
-        /// Path of the number, such as `n_gps`.
+        /// Path of the parameter that holds the number of boards, such as `n_gps`.
         what: String,
         /// Smallest and largest valid value.
         expected: (u64, u64),
@@ -167,7 +167,7 @@ impl Parameter {
         (low..=high).contains(&self.value)
     }
 
-    /// Returns the text of a warning that the value is out of range, with the range and its source.
+    /// Returns a warning that the value is out of range. The text contains the range and the source of the range.
     #[must_use]
     pub fn warning(&self) -> String {
         let Self { path, info, value, .. } = self;
@@ -180,7 +180,7 @@ impl Parameter {
     }
 }
 
-/// Largest number of boards of one kind. Port numbers have 16 bits, so this limit leaves room for all boards.
+/// Largest number of boards of one kind. With this limit, 16-bit port numbers suffice for all boards.
 const MAX_BOARDS: u64 = 1_000;
 
 impl MachineConfig {
@@ -224,16 +224,16 @@ impl MachineConfig {
 
     /// Returns the parameters that identify this machine in names of experiments.
     ///
-    /// The result omits parameters of firmware and of the i860 that have the papers' values. Older versions could not
-    /// set these parameters. Omitting them keeps the names of old experiments valid.
+    /// The result omits parameters of firmware and of the i860 that have the values from the papers. Older versions
+    /// could not set these parameters. Omitting them keeps the names of old experiments valid.
     #[must_use]
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Returns true for parameters of firmware and of the i860, which have the papers' value unless a machine sets
-    /// another.
+    /// Returns true for parameters of firmware and of the i860. Names of old experiments imply the values from the
+    /// papers for these parameters.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);
@@ -247,7 +247,7 @@ impl MachineConfig {
         }
     }
 
-    /// Returns the parameter table of a firmware by its type.
+    /// Returns the firmware parameter table that has the type `T`.
     #[must_use]
     pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
         self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
@@ -262,7 +262,7 @@ impl MachineConfig {
 
     /// Returns the parameters that differ from the preset's values, by path.
     ///
-    /// A table that the preset does not have (firmware, another display) is compared with the papers' values.
+    /// A table that the preset lacks (of firmware or of another display) is compared with the values from the papers.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
@@ -321,7 +321,7 @@ impl MachineConfig {
         Err(self.not_settable(path))
     }
 
-    /// Returns the error for a path that no changeable table has: the parameter is read-only or unknown.
+    /// Returns the error for a path that is not in any changeable table: the parameter is read-only or unknown.
     fn not_settable(&self, path: &str) -> ConfigError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
             Some(Parameter { path, info, value, .. }) => ConfigError::ReadOnly { path, value, origin: info.source },
@@ -335,7 +335,7 @@ impl MachineConfig {
         ConfigError::UnknownParameter { found: path.to_owned(), nearest }
     }
 
-    /// Returns the length of the first display's first period. For NTSC, a period is one field.
+    /// Returns the duration of the first display's first period. For NTSC, a period is one field.
     ///
     /// # Errors
     ///
@@ -366,21 +366,23 @@ impl MachineConfig {
 }
 
 impl MachineConfig {
-    /// Returns the machine with another number of graphics processors, the master included.
+    /// Returns the machine with `n_gps` graphics processors, including the master.
     #[must_use]
     pub fn with_gps(self, n_gps: usize) -> Self {
         Self { n_gps, ..self }
     }
 
-    /// Returns the machine with another number of renderers.
+    /// Returns the machine with `n_renderers` renderers.
     #[must_use]
     pub fn with_renderers(self, n_renderers: usize) -> Self {
         Self { n_renderers, ..self }
     }
 
-    /// Refuses a ring on which commands for full FIFOs can hold all channels: the pixels of the renderers, which would empty the FIFOs, would
-    /// wait for ever. Each renderer receives one message at a time,
-    /// and each graphics processor sends on `source_channels` at most.
+    /// Returns an error for a ring whose channels can all be blocked by commands for full renderer FIFOs.
+    ///
+    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the pixels would wait for
+    /// ever. Each renderer receives one message at a time, and each graphics processor sends on at most
+    /// `source_channels` channels.
     fn check_channels(&self) -> Result<(), ConfigError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);

@@ -17,7 +17,7 @@ pub(crate) enum Event {
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
-    /// Arrival of messages on a host line (by its number), which bypasses the ring.
+    /// Arrival of messages on a host line, a connection that bypasses the ring. The value is the line's index.
     HostLine(usize),
     /// Event that a display has scheduled for itself.
     Display(usize, DisplayEvent),

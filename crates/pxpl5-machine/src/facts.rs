@@ -19,15 +19,16 @@ pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// Returns the trace entry of a mark.
+/// Returns the trace entry of a time stamp that a program set at the begin or end of a stage.
 pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the code of a surface in the trace. Code 2 stands for no surface, so surfaces from 2 on are shifted by one.
+/// Returns the code of a surface in the trace. Code 2 stands for no surface, so a surface number of 2 or more is
+/// increased by one.
 ///
-/// Code 2 dates from versions with at most two surfaces and keeps old trace hashes valid.
+/// Code 2 for no surface dates from versions with at most two surfaces. Old trace hashes remain valid.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

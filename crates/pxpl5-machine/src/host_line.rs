@@ -6,13 +6,14 @@ use std::fmt::Debug;
 
 /// A connection from the host to the first display that bypasses the ring.
 ///
-/// An example is the line that carries orientations of the head. Traffic on the ring does not delay its messages.
+/// An example is the line that carries orientations of the head. Traffic on the ring does not delay messages of this
+/// line.
 pub trait HostLine: Debug {
     /// Returns the time of the first arrival after the instant `after`, or `None` if no more messages follow.
     fn next(&self, after: Time) -> Option<Time>;
 
-    /// Returns the messages that arrive at the instant `now`, each with the number of the receiving port of the
-    /// display.
+    /// Returns the messages that arrive at the instant `now`. Each message has the index of its port among the
+    /// display's ports.
     ///
     /// The machine calls this method with the instants from [`HostLine::next`], in ascending order.
     fn messages(&mut self, now: Time) -> Vec<(usize, Body)>;

@@ -3,12 +3,13 @@
 //! - [`Machine`] is the schematic. Only [`Machine`] connects boards to each other.
 //! - [`MachineConfig`] holds every number of a machine. A configuration starts from a preset of the papers
 //!   ([`PRESETS`]).
-//! - [`Record`] holds the boards after a run and everything observed during the run.
+//! - [`Record`] holds the boards after a run and all observations of the run.
 //!
 //! A machine owns any number of displays ([`pxpl5_display::Display`]). The machine uses only the
 //! [`pxpl5_display::Display`] interface and contains no code for a particular kind of display.
 //!
-//! **Not here:** clocks, threads and files of the host computer. Callers pass them in ([`PixelWorker`]).
+//! **Not here:** clocks, threads and files of the host computer. To compute pixels on a thread, a caller passes in a
+//! [`PixelWorker`].
 
 #![warn(missing_docs)]
 

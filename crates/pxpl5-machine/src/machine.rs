@@ -48,11 +48,11 @@ pub struct Machine {
     /// True if every edge of the boards' clock is an event (optimization `IdleBoards` disabled).
     every_edge: bool,
     failure: Option<RunError>,
-    /// Events since the last tick of the first display, not counting events of displays and clocks.
+    /// Number of events of boards other than displays and clocks since the last tick of the first display.
     work_events: u64,
-    /// Number of consecutive ticks of the first display without any other event between them.
+    /// Number of ticks of the first display since the last event of another kind.
     idle_ticks: u64,
-    /// The instant up to which it has run.
+    /// The simulated time up to which the machine has run.
     now: Time,
 }
 
@@ -66,10 +66,10 @@ struct Contexts {
 
 /// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is idle if no other event happened since the previous tick and none is pending.
+/// A tick is idle if no other event happened since the previous tick and no other event is pending.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Events that each tick of the first display causes: the signal to the first GP, and the poll of its programs.
+/// Number of events caused by each tick: the signal to the first GP, and the poll of the first GP's programs.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 /// Returns the delay of a signal that leaves a board: one cycle of the boards' 40 MHz clock.
@@ -78,7 +78,7 @@ fn cycle() -> Span {
 }
 
 impl Machine {
-    /// Builds a machine whose displays have ports for `pictures` pictures at a time: 1, or 2 for two eyes.
+    /// Builds a machine in which each display has ring ports for `pictures` pictures: 1, or 2 for two eyes.
     ///
     /// # Errors
     ///
@@ -135,12 +135,13 @@ impl Machine {
         self.queue.shuffle_ties(seed);
     }
 
-    /// Computes the pixels of every region copied from now on, using `worker`.
+    /// Uses `worker` to compute the pixels of every region that is copied after this call.
     pub fn compute_all_pixels(&mut self, worker: Box<dyn PixelWorker>) {
         self.pixels = Some(worker);
     }
 
-    /// Takes the times of the graphics processors' work from i860 code, if the configuration names any code.
+    /// Takes the times of the graphics processors' work from executed i860 code, if the configuration names a code
+    /// version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {
@@ -168,7 +169,8 @@ impl Machine {
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
-    /// Discards marks, arrivals and swaps before an instant, to save memory. No simulated time changes.
+    /// Discards time stamps of stages, region arrivals and swaps before an instant, to save memory. No simulated time
+    /// changes.
     pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.discard_before(instant, |period| displays[0].tick(period));
@@ -207,7 +209,7 @@ impl Machine {
         self.processors[usize::from(node.0)].handle_for(level)
     }
 
-    /// Loads a program onto the host or graphics processor at a port.
+    /// Loads a program with a CPU priority onto the host or graphics processor at a port.
     ///
     /// # Panics
     ///
@@ -253,7 +255,7 @@ impl Machine {
         self.failure.clone().map_or(Ok(()), Err)
     }
 
-    /// Handles the next event if it is before the instant `end`, and returns its time.
+    /// Handles the next event if it is before the instant `end`, and returns the event's time.
     ///
     /// # Errors
     ///
@@ -263,7 +265,8 @@ impl Machine {
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Handles the next event if it is before `end` and the machine has not failed. Returns the event's time.
+    /// Removes the next event from the queue if the event is before `end` and the machine has not failed. Returns the
+    /// event's time.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -315,9 +318,10 @@ impl Machine {
         }
     }
 
-    /// Detects a deadlock: programs wait, nothing happened for [`DEADLOCK_TICKS`] ticks, and no work is pending.
+    /// Detects a deadlock: programs wait, [`DEADLOCK_TICKS`] ticks passed without another event, and no work is
+    /// pending.
     ///
-    /// Pending work is checked because a single piece of work may take longer than [`DEADLOCK_TICKS`] ticks.
+    /// Pending work is checked because one task of a board may take longer than [`DEADLOCK_TICKS`] ticks.
     fn watch(&mut self, now: Time) {
         let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
         self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
@@ -337,7 +341,7 @@ impl Machine {
             || !self.record.ring.waiting().is_empty()
     }
 
-    /// Returns the number of consecutive ticks of the first display without any other event.
+    /// Returns the number of ticks of the first display since the last event of another kind.
     #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
@@ -351,7 +355,7 @@ impl Machine {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns the boards that wait, each with a description of what it waits for.
+    /// Returns the boards that wait. Each entry describes the event that the board waits for.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let processors = self
@@ -402,7 +406,7 @@ impl Machine {
                 }
                 self.deliver(now, message);
             }
-            // Tell the sender that its message was accepted.
+            // Inform the sender that its message was accepted.
             RingOutput::Sent { source, ticket } => {
                 record.hash.record(now, &[3, u64::from(source.0), ticket]);
                 match record.ports.renderers.binary_search(&source) {
@@ -460,7 +464,7 @@ impl Machine {
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }
-        // Record the marks of its programs.
+        // Record the time stamps that its programs have set.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
             hash.record(mark.time, &mark_facts(&mark));
@@ -499,7 +503,8 @@ impl Machine {
         &self.processors
     }
 
-    /// Returns the host or a graphics processor. Returns `None` for other boards and for numbers that do not exist.
+    /// Returns the host or a graphics processor. Returns `None` for other kinds of boards and for boards that do not
+    /// exist.
     #[must_use]
     pub fn board(&self, board: Board) -> Option<&GpBoard> {
         match board {
@@ -511,13 +516,13 @@ impl Machine {
 
     /// Sets breakpoints at addresses of i860 code, replacing all earlier breakpoints.
     ///
-    /// A breakpoint records the processor's state and changes no simulated time. Processors that take their times from
-    /// a table never reach a breakpoint.
+    /// A breakpoint records the processor's state and changes no simulated time. A processor that takes the times of
+    /// its work from a table never reaches a breakpoint.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         self.processors.iter_mut().for_each(|board| board.break_at(addresses));
     }
 
-    /// Returns and removes the breakpoint hits since the last call, in the order of the boards.
+    /// Removes and returns all breakpoint hits recorded since the last call, in the order of the boards.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.processors.iter_mut().flat_map(GpBoard::take_hits).collect()
@@ -541,7 +546,7 @@ impl Machine {
         self.queue.len()
     }
 
-    /// Waits for the worker that computes pixels, and returns the number of regions it computed.
+    /// Waits until the worker has computed all pixels. Returns the number of regions that the worker computed.
     pub fn finish_pixels(&mut self) -> u64 {
         self.pixels.take().map_or(0, PixelWorker::finish)
     }

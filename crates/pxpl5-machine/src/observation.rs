@@ -7,12 +7,12 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
-/// A region that has arrived at a display.
+/// The arrival of a region of a picture at a display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrival {
     /// The surface that shows the region.
     pub surface: SurfaceId,
-    /// The picture, the region and the port of the display that the region was sent to.
+    /// The region's picture, its index in the picture, and the display port that receives it.
     pub target: CopyTarget,
     /// Arrival of the region's first message.
     pub first_part_at: Time,
@@ -28,14 +28,14 @@ impl Arrival {
     }
 }
 
-/// A change of the visible buffer at a tick of a display.
+/// A change of the visible buffer of a double-buffered display, at the start of a display period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swap {
-    /// The surface that shows its other buffer.
+    /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The ring port behind the surface, or behind the part of the surface that swapped.
+    /// The ring port of the surface, or of the part of the surface that swapped.
     pub port: NodeId,
-    /// Number of earlier swaps at this port.
+    /// Number of swaps at this port before this swap.
     pub number: u64,
     /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
@@ -46,7 +46,7 @@ pub struct Swap {
 /// A picture, or a part of it, that a double-buffered port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Number of the picture, in its pipeline's own count.
+    /// Number of the picture, as counted by its pipeline.
     pub picture: PictureNumber,
     /// Arrival of the last message of the picture's first region.
     pub first_region_at: Time,
@@ -54,18 +54,18 @@ pub struct Shown {
     pub at: Time,
 }
 
-/// Everything observed of a run. Each list is in the order in which the machine handled the events.
+/// All observations of a run. Each list is in the order in which the machine handled the events.
 #[derive(Clone, Debug, Default)]
 pub struct Observation {
-    /// Marks set by programs at the begin and end of each stage of a picture.
+    /// Time stamps that programs set at the begin and end of each stage of a picture.
     pub marks: Vec<Mark>,
     /// Regions that have arrived at displays.
     pub arrivals: Vec<Arrival>,
     /// Swaps of double buffers, in the order in which displays made them.
     pub swaps: Vec<Swap>,
-    /// Renderer and region: the regions that were drawn, in the order in which their copy commands started.
+    /// Regions that were drawn, each with its renderer's index, in the order in which the copy commands started.
     pub drawn: Vec<(usize, DrawnRegion)>,
-    /// Messages and FIFO levels. `None` unless recording was enabled.
+    /// Ring messages and FIFO levels. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
     pub forgotten: DiscardedSummary,
@@ -74,18 +74,19 @@ pub struct Observation {
 /// Summary of observations discarded by [`Machine::discard_before`](crate::Machine::discard_before) in a long run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DiscardedSummary {
-    /// Marks, arrivals and swaps before this instant were discarded. The last swap of each port was kept.
+    /// Time stamps of stages, arrivals and swaps before this instant were discarded. The last swap of each port was
+    /// kept.
     pub before: Time,
     /// Period of the first swap in the whole run.
     pub first_swap: Option<PeriodNumber>,
-    /// Largest number of regions held for one picture when observations were discarded.
+    /// Largest number of regions in memory for one picture at the times when observations were discarded.
     pub most_regions: u32,
 }
 
-/// One stage of a picture on one surface, from the first board's begin to the last board's end.
+/// One stage of a picture on one surface, from the time the first board begins to the time the last board ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
-    /// The picture that the boards worked on, in its pipeline's own count.
+    /// Number of the picture that the boards worked on, as counted by its pipeline.
     pub picture: PictureNumber,
     /// The surface, for stages that handle one eye at a time.
     pub surface: Option<SurfaceId>,
@@ -100,12 +101,12 @@ pub struct StageSpan {
 impl Observation {
     /// Returns all stages in the order of picture, surface and stage.
     ///
-    /// COPY is derived from arrivals at displays: from the begin of the first region's transfer to the arrival of its
-    /// last pixel. `message` is the duration of one message.
+    /// COPY is derived from arrivals at displays. It lasts from the begin of the first region's transfer to the arrival
+    /// of the last region's last pixel. `message` is the duration of one message.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
-        // Stages that programs have marked.
+        // Stages for which programs have set time stamps.
         for mark in &self.marks {
             let fresh = StageSpan {
                 picture: mark.picture,
@@ -120,7 +121,7 @@ impl Observation {
                 StageEdge::End => span.end = span.end.max(Some(mark.time)),
             }
         }
-        // COPY, which no program marks.
+        // COPY, for which no program sets time stamps.
         for arrival in &self.arrivals {
             let picture = arrival.target.picture;
             let surface = Some(arrival.surface);
@@ -133,9 +134,11 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// Returns the frames that all of the first `surfaces` surfaces have shown, with the period of the latest swap.
+    /// Returns the frames that all of the first `surfaces` surfaces have shown. The key is the number of swaps before
+    /// the frame.
     ///
-    /// The key is the number of earlier swaps. Frames whose swaps were discarded are missing.
+    /// The value is the period of the latest of the surfaces' swaps to this frame. Frames with discarded swaps are
+    /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -153,7 +156,7 @@ impl Observation {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
-    /// Returns the number of swaps of a port before the first one still held, or 0 if none is held.
+    /// Returns the number of discarded swaps of a port, or 0 if no swap of this port remains in memory.
     #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()
@@ -167,7 +170,7 @@ impl Observation {
         of_pictures.into_values().max().unwrap_or_default().max(self.forgotten.most_regions)
     }
 
-    /// Returns the number of marks, arrivals and swaps held in memory.
+    /// Returns the number of time stamps, arrivals and swaps in memory.
     #[must_use]
     pub fn records(&self) -> usize {
         self.marks.len() + self.arrivals.len() + self.swaps.len()
@@ -190,14 +193,15 @@ impl Observation {
             last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
         }
         self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
-        // Keep capacity for twice the held records: a run that discards regularly needs the space again soon.
+        // Keep capacity for twice the records in memory, because a run that discards regularly soon needs the space
+        // again.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
         self.drawn.shrink_to(2 * self.drawn.len());
         self.forgotten = DiscardedSummary { before: instant, first_swap, most_regions };
     }
 
-    /// Returns the swaps of a surface that are still held, in order.
+    /// Returns the swaps of a surface that have not been discarded, in the order of time.
     pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = &Swap> {
         self.swaps.iter().filter(move |swap| swap.surface == surface)
     }
@@ -210,7 +214,7 @@ pub struct LateRegion {
     pub field: PeriodNumber,
     /// The surface that should have shown the region.
     pub surface: SurfaceId,
-    /// Number of the region in the picture's grid.
+    /// Index of the region in the picture's grid of regions.
     pub region: u16,
     /// Time between the deadline and the arrival of the complete region, in picoseconds.
     pub lateness: Span,
@@ -222,7 +226,7 @@ mod tests {
 
     const EYES: [SurfaceId; 2] = [SurfaceId(0), SurfaceId(1)];
 
-    /// Returns an observation of two eyes that swap every second period. The second eye swaps one period after the
+    /// Returns an observation of two eyes that each swap every second period. The second eye swaps one period after the
     /// first.
     fn stereo() -> Observation {
         let swap = |number: u64| {
@@ -314,7 +318,7 @@ mod tests {
         for capacity in [observation.marks.capacity(), observation.arrivals.capacity()] {
             assert!((200..1_000).contains(&capacity), "{capacity}");
         }
-        // Kept are the swaps from time 900 on, and the last swap of each eye before it.
+        // The swaps from time 900 on are kept, and the last swap of each eye before time 900.
         let of = |surface| observation.swaps_of(surface).map(|swap| swap.tick.0).collect::<Vec<_>>();
         assert_eq!(of(EYES[0])[..2], [8, 10]);
         assert_eq!(of(EYES[1])[..3], [7, 9, 11]);

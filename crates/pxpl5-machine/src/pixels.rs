@@ -1,4 +1,4 @@
-//! Computation of pixels during a run. The caller supplies it, and it takes no simulated time.
+//! Interface for computing pixels during a run. The caller supplies a worker. The computation takes no simulated time.
 
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// Computes the pixels of regions while the simulation runs.
 pub trait PixelWorker: Debug {
-    /// Accepts a region. The worker may compute it at any time before [`PixelWorker::finish`] returns.
+    /// Accepts a region. The worker may compute the region's pixels at any time before [`PixelWorker::finish`] returns.
     fn compute(&mut self, region: &Arc<dyn PixelSource>);
 
     /// Waits until all regions are computed and returns their number.

@@ -59,7 +59,7 @@ impl Ports {
     }
 }
 
-/// Returns the next `count` unused ports.
+/// Reserves and returns the next `count` unused ports.
 fn take_ports(next: &mut u16, count: usize) -> Vec<NodeId> {
     let first = *next;
     *next += count as u16;

@@ -11,7 +11,7 @@ use serde::Serialize;
 /// A built-in machine: name, description and parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Preset {
-    /// Name on the command line.
+    /// Name of the preset on the command line.
     pub name: &'static str,
     /// Description of the machine and its source.
     pub about: &'static str,
@@ -98,8 +98,9 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
-    /// Returns the machine with the times of primitives that follow from its i860 code in one use, instead of those that were
-    /// published or fitted. A machine without code takes the times of compiled code.
+    /// Returns the machine with times of primitives computed from its i860 code, instead of published or fitted times.
+    ///
+    /// `of` names the use of the code. A machine without code takes the times of compiled code.
     #[must_use]
     pub fn with_times_of_code(self, of: CodeUse) -> Self {
         let gp = self.gp.of_code(self.code.unwrap_or(CodeVersion::Compiled), of);
@@ -122,13 +123,13 @@ impl MachineConfig {
         }
     }
 
-    /// Returns the machine of the Rendering Control measurements: 13 GPs, 5 renderers (TR94).
+    /// Returns the machine of the Rendering Control measurements: 13 graphics processors and 5 renderers (TR94).
     #[must_use]
     pub fn small_hmd() -> Self {
         Self::from_preset(&PRESETS[0])
     }
 
-    /// Returns the machine of the Slats prototype: 1 GP, 5 renderers (TR94).
+    /// Returns the machine of the Slats prototype: 1 graphics processor and 5 renderers (TR94).
     #[must_use]
     pub fn slats() -> Self {
         Self::from_preset(&PRESETS[1])

@@ -1,4 +1,4 @@
-//! State of a machine's boards and everything observed of a run.
+//! State of a machine's boards, and all observations of a run.
 
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
@@ -11,7 +11,8 @@ use pxpl5_sim::{Span, Time, TraceHash};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
 
-/// The boards of a machine, without programs, and everything observed of the run. Can be sent to another thread.
+/// The boards of a machine, without programs, and all observations of the run. The record can be sent to another
+/// thread.
 #[derive(Debug)]
 pub struct Record {
     pub(crate) config: MachineConfig,
@@ -91,13 +92,13 @@ impl Record {
         self.surfaces().nth(id.index()).map(|(_, surface)| surface)
     }
 
-    /// Returns everything observed so far.
+    /// Returns all observations so far.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         &self.observation
     }
 
-    /// Returns all stages of all pictures. COPY is derived from arrivals at the displays.
+    /// Returns all stages of all pictures. The COPY stages are derived from arrivals at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.observation.stages(self.message_span())
@@ -106,7 +107,7 @@ impl Record {
     /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
     ///
     /// A swap shows the picture whose last region arrived before the swap. This rule holds because no region of the
-    /// next picture arrives before the other buffer is free. Discarded arrivals and swaps are missing.
+    /// next picture arrives before the other buffer is free. Pictures with discarded arrivals or swaps are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.
@@ -130,7 +131,7 @@ impl Record {
         shown.collect()
     }
 
-    /// Returns how long a message of maximum length occupies a channel.
+    /// Returns the time for which a message of maximum length occupies a ring channel.
     #[must_use]
     pub const fn message_span(&self) -> Span {
         self.ring.timing().occupancy(MAX_MESSAGE_WORDS)
@@ -154,14 +155,14 @@ impl Record {
         self.events
     }
 
-    /// Returns the instant up to which the machine ran; time zero while it still runs.
+    /// Returns the simulated time at which the run ended. Returns time zero while the machine runs.
     #[must_use]
     pub const fn elapsed(&self) -> Time {
         self.elapsed
     }
 
-    /// Returns what the CPU time of the host and of the graphics processors went to, in the order of their ports; empty while the machine
-    /// still runs.
+    /// Returns the use of the CPU time of the host and of each graphics processor, in the order of their ports. The
+    /// slice is empty while the machine runs.
     #[must_use]
     pub fn processors_used(&self) -> &[GpUse] {
         &self.processors_used

@@ -23,7 +23,7 @@ pub enum RunError {
     Deadlock {
         /// Simulated time at which the deadlock was detected.
         time: Time,
-        /// The waiting boards, each with what it waits for.
+        /// The waiting boards. Each entry describes the event that the board waits for.
         blocked: Vec<Blocked>,
     },
     /// The ring could not carry a message.
@@ -31,7 +31,7 @@ pub enum RunError {
     Ring {
         /// Simulated time of the request.
         time: Time,
-        /// Description of the error in the message.
+        /// Text that describes the error in the message.
         reason: String,
     },
 }

@@ -15,17 +15,19 @@ pub enum Optimization {
     ///
     /// If disabled, every processor polls its programs and the ring polls its arbiter at every edge of the boards' 40
     /// MHz clock. Renderers and frame buffers never poll. The duration of a renderer's command does not depend on data,
-    /// so the command's end is known when it arrives.
+    /// so the end of the command is known when the command arrives.
     IdleBoards,
-    /// The ring computes the end of a message when it grants the channel. If disabled, every word of every channel is
-    /// an event.
+    /// The ring computes the end of a message when it grants the channel. If disabled, every word on every channel
+    /// causes an event.
     Transfers,
-    /// A region that no primitive touches is drawn once and reused while its other commands stay the same.
+    /// A region without primitives is drawn once. Its pixels are reused while the region's other commands stay the
+    /// same.
     ///
-    /// Triangles that firmware sends to regions they do not touch (Slats) are skipped when pixels are computed. If
-    /// disabled, every region and triangle is drawn.
+    /// Firmware of Slats also sends triangles to regions that they do not touch. Such triangles are skipped when pixels
+    /// are computed. If disabled, every region and triangle is drawn.
     EmptyRegions,
-    /// Code that repeats with all its code and data in the caches takes the clocks counted before (cycle level).
+    /// Repeated code whose instructions and data are all in the caches takes the clocks counted at an earlier execution
+    /// (cycle level).
     ///
     /// If disabled, the i860s count every clock.
     RepeatedCode,

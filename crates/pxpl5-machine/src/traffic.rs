@@ -15,25 +15,27 @@ pub struct Transfer {
     pub words: u32,
     /// Arrival of the first word at the receiver.
     pub begin: Time,
-    /// Time at which the receiver had taken the last word.
+    /// Time at which the receiver finished taking the last word.
     pub end: Time,
 }
 
 /// Messages, channel use and FIFO changes recorded during a run.
 #[derive(Clone, Debug, Default)]
 pub struct Traffic {
-    /// Messages, in the order in which their receivers had taken them.
+    /// Messages, in the order in which their receivers finished taking them.
     pub transfers: Vec<Transfer>,
-    /// Number of occupied channels, at each change. A channel counts as occupied during overhead and stalls too.
+    /// Number of occupied channels after each change. A channel counts as occupied during overhead and stalls too.
     pub busy_channels: Vec<(Time, u32)>,
-    /// Changes of the FIFOs: renderer, time, and words added by a complete command or removed by a command that starts.
+    /// Changes of the renderers' FIFOs: index of the renderer, time, and change in words.
+    ///
+    /// A complete command adds its words. A command that starts removes its words.
     pub fifo_changes: Vec<(usize, Time, i64)>,
-    /// Messages that a renderer has not accepted yet, by destination.
+    /// Messages on the way to a renderer that has not accepted them yet, by destination port.
     announced: BTreeMap<NodeId, Transfer>,
 }
 
 impl Traffic {
-    /// Returns the number of words of complete commands in a renderer's FIFO, at each change.
+    /// Returns the number of words in a renderer's FIFO after each change. Only complete commands count.
     #[must_use]
     pub fn fifo_words(&self, renderer: usize) -> Vec<(Time, i64)> {
         let of = self.fifo_changes.iter().filter(|change| change.0 == renderer);
@@ -47,14 +49,14 @@ impl Traffic {
         sums.collect()
     }
 
-    /// Returns the number of messages and changes held in memory.
+    /// Returns the number of messages and changes in memory.
     #[must_use]
     pub fn records(&self) -> usize {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }
 
-    /// Discards messages and changes before an instant, and keeps the channel use and FIFO levels valid at that
-    /// instant.
+    /// Discards messages and changes before an instant. The first remaining entries give the channel use and FIFO
+    /// levels at that instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
@@ -85,8 +87,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message to a receiver that takes words without a gap, so the begin follows from the end and the
-    /// length.
+    /// Records a message to a receiver that takes all words without a gap. The begin time is computed from the end time
+    /// and the length.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));
@@ -166,7 +168,7 @@ mod tests {
         assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
     }
 
-    /// Returns the state of a history at an instant, which is that of the last entry at or before it.
+    /// Returns the value of a recorded quantity at an instant: the value of the last entry at or before the instant.
     fn at<T: Copy>(history: &[(Time, T)], instant: u64) -> Option<T> {
         history.iter().rev().find(|(time, _)| time.0 <= instant).map(|(_, state)| *state)
     }

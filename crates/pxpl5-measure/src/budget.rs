@@ -1,31 +1,31 @@
-//! Latency from the head's pose to light, by stage.
+//! Latency from the measurement of the head's pose until the picture is lit, by stage.
 
 use pxpl5_run::{FinalResults, PictureTimes, SampledPose, Samples};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 
-/// Mean time of each stage from the head's pose to light, in milliseconds. The stages add up to the total.
+/// Mean time of each stage from the measurement of the head's pose until the picture is lit, in milliseconds.
 ///
-/// All means are NaN (null in JSON) if no picture was measured.
+/// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Budget {
-    /// From the measurement of the pose to the arrival of its report at the host: tracker, cable, kernel of the host.
+    /// From the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
     pub tracking_ms: f64,
     /// From the arrival of the tracker's report until the pipeline uses it.
     pub waiting_ms: f64,
-    /// From the use of the report to the start of TRANSFORM: link of the host, edits, wait for the stage.
+    /// From the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
     pub sending_ms: f64,
     /// From the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER, COPY.
     pub drawing_ms: f64,
-    /// From the end of COPY until the picture is shown: wait for the retrace or for the beam.
+    /// From the end of COPY until the picture is shown: wait for the retrace or for the display's beam.
     ///
     /// Negative if the last pixels arrive after the first pixels are shown.
     pub showing_ms: f64,
-    /// From the time the picture is shown until the beam reaches its middle.
+    /// From the time the picture is shown until the display's beam reaches the middle of the picture.
     pub scanning_ms: f64,
-    /// From the measurement of the pose to the light of the picture's middle.
+    /// From the measurement of the pose until the middle of the picture is lit.
     pub total_ms: f64,
-    /// Number of pictures in the mean.
+    /// Number of pictures over which the means are computed.
     pub n: u64,
 }
 
@@ -58,15 +58,15 @@ impl Budget {
     }
 }
 
-/// Sums of the stages over complete pictures in the window that have a measured pose, in milliseconds.
+/// Sums of the stages over complete pictures in the result window that have a measured pose, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
-    /// First period of the result window, as far as known.
+    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     stages_ms: [Samples; STAGES],
-    /// Poses of recent and future pictures.
+    /// Poses of recent and future pictures, by the number of the view.
     ///
-    /// They are copied because a head discards old poses, and because later pictures may use the last pose of a silent
+    /// Poses are copied because a head discards old poses, and because later pictures may use the last pose of a silent
     /// tracker.
     poses: Poses,
 }
@@ -109,7 +109,7 @@ impl BudgetSum {
     }
 }
 
-/// Returns the poses that the head of a run still holds.
+/// Returns the poses that the head of a run still has in memory.
 pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
@@ -124,7 +124,7 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
-/// Returns the time between consecutive instants of a picture's way from the pose to light, in milliseconds.
+/// Returns the durations of a picture's stages from the measured pose until the picture is lit, in milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// Mean error of a run and the contribution of each cause, in pixels.
 ///
 /// The contribution of a cause is the reduction of the error when only this cause is turned off. Some causes act only
-/// together: a latency matters only if the prediction fails. The remainder is the interaction, so parts and interaction
-/// add up to the whole.
+/// together: a latency matters only if the prediction fails. The interaction is the remaining error, so contributions
+/// and interaction add up to the whole error.
 ///
 /// A contribution can be negative. For example, a filter lags even without the noise that it should smooth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,8 +33,8 @@ pub struct ErrorPart {
 impl ErrorCauses {
     /// Computes the contributions for a run.
     ///
-    /// `whole` holds the errors of the same run shown in the same way ([`PixelErrors::shown`]). Returns `None` for a
-    /// run without a head, or if no pixel could be evaluated.
+    /// `whole` holds the errors of the same run in the display mode `showing` ([`PixelErrors::shown`]). Returns `None`
+    /// for a run without a head, or if no pixel could be evaluated.
     #[must_use]
     pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;

@@ -1,14 +1,15 @@
-//! Ray casting into the scene: the point that a pixel shows, and the position of this point at another time.
+//! Ray casting into the scene. Finds the scene point that a pixel shows, and the position of this point at another
+//! time.
 
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Frame, Hinge, HmdConfig, Scene, Structure};
 use pxpl5_sim::Time;
 
-/// A visible point, in the coordinates of the object it belongs to.
+/// A visible point of the scene, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Content {
     point: DVec3,
-    /// Index in [`Contents`] of the structure that the point moves with. `None` for a fixed point of the world.
+    /// Index in [`Contents`] of the structure to which the point is attached. `None` for a fixed point of the world.
     body: Option<usize>,
 }
 
@@ -47,7 +48,7 @@ struct Patch {
 /// Number of triangles in a [`Patch`].
 const PATCH: usize = 32;
 
-/// A half line with the points `origin + t * direction`, where `t` is the depth in metres.
+/// A ray with the points `origin + t * direction`, where `t` is the depth in metres.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     origin: DVec3,
@@ -68,7 +69,8 @@ impl Contents {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// Returns the nearest hit, and its depth, among the structures selected by `structures` (indexed as in the scene).
+    /// Returns the nearest hit, and its depth, among the structures whose flag in `structures` is true (same index as
+    /// in the scene).
     pub(crate) fn hit_among(
         &self,
         origin: DVec3,
@@ -99,7 +101,7 @@ impl Contents {
         nearest.1.map(|content| (nearest.0, content))
     }
 
-    /// Returns the position of a point in the world at a time.
+    /// Returns the position of a scene point in world coordinates at a time.
     pub(crate) fn place(&self, content: &Content, at: Time) -> DVec3 {
         let body = content.body.and_then(|body| self.bodies.get(body));
         body.map_or(content.point, |body| body.model(at).transform_point3(content.point))
@@ -120,7 +122,7 @@ impl Body {
         }
     }
 
-    /// Returns the matrix from the structure's coordinates to the world's.
+    /// Returns the matrix from the structure's coordinates to world coordinates at a time.
     fn model(&self, at: Time) -> DMat4 {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }

@@ -1,7 +1,8 @@
 //! The chain of waits that ends with a picture on the screen.
 //!
-//! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. It goes from each piece of work to the
-//! piece whose end let it begin. Each instant of the latency belongs to one resource, so the shares add up to 1.
+//! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. Each step leads from
+//! a piece of work to the earlier work whose end let it begin. Each instant of the latency belongs to one resource, so
+//! the shares add up to 1.
 
 use crate::resource::Resource;
 use crate::trail::{Step, Trail};
@@ -12,44 +13,46 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// The share of a latency that waits for one resource.
+/// The share of a latency in which a picture waits for one resource.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathPart {
-    /// The resource.
+    /// The resource that the picture waits for.
     pub resource: Resource,
     /// Share of the latency, 0 to 1.
     pub share: f64,
-    /// Mean over the followed pictures, milliseconds.
+    /// Mean waiting time over the followed pictures, in milliseconds.
     pub ms: f64,
-    /// The board, or the port's board, that takes most of the part; nothing where the records name none.
+    /// The board that causes the largest share of this waiting time. `None` if the records name no board.
     pub board: Option<String>,
-    /// Share of the part that this board takes, 0 to 1.
+    /// Share of this waiting time that the board causes, 0 to 1.
     pub share_of_board: Option<f64>,
 }
 
-/// The chain of waits of the last pictures of a run.
+/// The chain of waits of the last complete pictures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
-    /// Pictures that were followed: the last complete ones of the window, at most [`PICTURES_FOLLOWED`].
+    /// Number of pictures that were followed: the last complete ones of the result window, at most
+    /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
-    /// Their mean latency from the start of TRANSFORM to the screen, milliseconds.
+    /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
     pub latency_ms: f64,
-    /// The resources that the pictures waited for, the largest share first.
+    /// The waits for each resource, with the largest share first.
     pub parts: Vec<PathPart>,
-    /// The first of them in a sentence.
+    /// The largest of these waits, as a sentence.
     pub limited_by: String,
-    /// The chain of the last picture, from the screen back.
+    /// The waits of the last picture as text, from the screen backwards.
     pub chain: Vec<String>,
 }
 
-/// Pictures that are followed at most: of these every run, however long, still has all records.
+/// Largest number of pictures that are followed. Even a long run still has all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
-/// Links of a chain that are told.
+/// Largest number of links of a chain that are printed.
 const LINKS_TOLD: usize = 16;
 
 impl CriticalPath {
-    /// Returns the chain of waits of a run's last complete pictures; `None` where no picture was complete, or where none was drawn for it.
+    /// Returns the chain of waits of a run's last complete pictures. Returns `None` if no picture was complete, or if
+    /// the total latency is zero.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let all: Vec<&PictureTimes> = outcome.complete_pictures().collect();
@@ -74,14 +77,14 @@ impl CriticalPath {
         Some(Self { pictures, latency_ms: total.as_ms() / pictures as f64, parts, limited_by, chain })
     }
 
-    /// Returns the share of the latency that waits for a resource, 0 to 1.
+    /// Returns the share of the latency in which pictures wait for a resource, 0 to 1.
     #[must_use]
     pub fn share(&self, resource: Resource) -> f64 {
         self.parts.iter().find(|part| part.resource == resource).map_or(0.0, |part| part.share)
     }
 }
 
-/// Sums up the steps of one resource; `None` where there is none.
+/// Sums the steps of all chains that wait for one resource. Returns `None` if there are none.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -102,13 +105,13 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is named alone if it takes at least this share of a part.
+/// A board is printed by name if it causes at least this share of the wait for a resource.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {:.0} % of the latency", self.resource.about(), self.share * 100.0)?;
-        // A machine has one display and one ring; their names say nothing.
+        // A machine usually has one display and one ring, so their names give no information.
         let is_shared = matches!(self.resource, Resource::Ports | Resource::Retrace | Resource::Ring);
         let is_of_one = !is_shared && self.share_of_board.is_some_and(|share| share >= NAMED_ALONE);
         match &self.board {
@@ -120,7 +123,7 @@ impl fmt::Display for PathPart {
     }
 }
 
-/// Joins steps of one kind that follow each other, and tells the first links.
+/// Joins consecutive steps with the same resource and board. Returns the first links as text.
 fn told(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;

@@ -4,20 +4,20 @@ use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Bits of the fraction that select a bin. A bin is 1/1024 of its numbers wide.
+/// Number of fraction bits that select a bin. The width of a bin is at most 1/1024 of its values.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
-/// A distribution of non-negative numbers that answers percentiles in limited memory.
+/// A distribution of non-negative numbers that computes percentiles in limited memory.
 ///
 /// Up to `limit` numbers are kept, and percentiles are exact. Beyond `limit` the numbers are counted in bins. A
-/// percentile is then the middle of a bin and differs from the true value by at most 1/2048. Count, mean and maximum
-/// are always exact.
+/// percentile is then the middle of a bin, with a relative error of at most 1/2048. Count, mean and maximum are always
+/// exact.
 #[derive(Clone, Debug)]
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// Number of values in each bin, by leading bits. Empty up to `limit` values.
+    /// Number of values in each bin. The key holds the leading bits of the values. Empty up to `limit` values.
     bins: BTreeMap<u64, u64>,
 }
 
@@ -36,7 +36,7 @@ impl Distribution {
         self.samples.push(value);
     }
 
-    /// Returns the first numbers, at most `limit` of them.
+    /// Returns the numbers that were added first, at most `limit` numbers.
     pub(crate) fn kept(&self) -> &[f64] {
         &self.samples
     }
@@ -58,7 +58,7 @@ impl Distribution {
         }
     }
 
-    /// Returns the middle of the bin that holds the number with a rank. Ranks count from 1, the smallest number.
+    /// Returns the middle of the bin that holds the number with the given rank. The smallest number has rank 1.
     fn ranked(&self, rank: u64) -> f64 {
         let mut counted = 0;
         let is_it = |(_, n): &(&u64, &u64)| {

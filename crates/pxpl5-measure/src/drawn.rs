@@ -10,7 +10,8 @@ use tracking::Pose;
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
-    /// When the newest report that the pose rests on was measured; `None` before the first, or where it is not known.
+    /// Time at which the tracker measured the newest report behind the pose. `None` before the first report, or if
+    /// unknown.
     pub(crate) measured_at: Option<Time>,
 }
 
@@ -26,7 +27,7 @@ pub(crate) enum Drawn {
     },
     /// A picture that the display shifts while scanning it out (raster offset).
     AdvancedMotion(Moment, DVec2),
-    /// Faces of a cube around the eye, addressed by the latched direction. The nearest point of all memories is
+    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest point of all memories is
     /// visible.
     Faces(FacesSeen),
 }
@@ -35,14 +36,15 @@ pub(crate) enum Drawn {
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
     /// For each memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
-    /// structure it holds.
+    /// structure of the scene. The flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,
 }
 
 impl Drawn {
-    /// Returns the instant for which the pixel was drawn. For a shifted picture, this is the instant of its light.
+    /// Returns the instant for which the pixel was drawn. For a shifted picture, the result is the instant when it is
+    /// lit.
     pub(crate) fn instant(&self, light: Time) -> Time {
         match self {
             Self::View(moment) => moment.objects_at,

@@ -1,4 +1,4 @@
-//! Sums of pixel errors, updated during a run or computed after it.
+//! Sums of pixel errors, updated during a run or computed after the run.
 
 use crate::distribution::Distribution;
 use crate::errors::{CENTRE, FieldMisregistration, PixelErrors, Showing, grid, lattice};
@@ -24,18 +24,18 @@ pub(crate) struct ErrorSum {
     showing: Option<Showing>,
     without: Option<Cause>,
     judging: Option<Evaluation>,
-    /// First period of the result window, as far as known.
+    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     collected: Option<Collected>,
 }
 
 impl ErrorSum {
-    /// Creates a sum with a given display mode, optionally with one cause of error turned off.
+    /// Creates a sum for a given display mode. If `without` is set, this cause of error is turned off.
     pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
         Self { showing: Some(showing), without, ..Self::default() }
     }
 
-    /// Evaluates the periods that are final.
+    /// Evaluates the display periods whose results can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let Some(head) = run.head else { return };
         let showing = self.showing.unwrap_or_else(|| head.head().raster().into());
@@ -61,7 +61,7 @@ impl ErrorSum {
         judging.shown.forget(run);
     }
 
-    /// Errors, and what else an eye sees where pixels shine for some time or pictures are moved.
+    /// Returns the pixel errors, and the results of the eye if pixels are lit for some time or pictures are moved.
     pub(crate) fn said(self) -> (PixelErrors, Option<EyeReport>) {
         self.collected.map(Collected::said).unwrap_or_default()
     }
@@ -74,9 +74,10 @@ struct Evaluation {
     shown: Shown,
     content: Content,
     head: Arc<HeadViews>,
-    /// True if a pixel is evaluated at the instant it was drawn for, instead of the instant of its light.
+    /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
+    /// lit.
     at_one_instant: bool,
-    /// First period that is not evaluated yet.
+    /// First display period that is not evaluated yet.
     next: PeriodNumber,
 }
 
@@ -84,17 +85,18 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The offset is that of the current field, if the field has one.
+    /// The display shifts the raster. The value holds the offset of the current field, if the field has one.
     AdvancedMotion(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
-    /// Pictures are moved to the newest pose.
+    /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
-    /// The real world is delayed with the pictures: both are of the head where it was measured.
+    /// A video of the real world is delayed with the pictures. Video and pictures show the pose at which the head was
+    /// measured.
     DelayedVideo,
 }
 
 impl Showing {
-    /// The device that moves pictures, with its rates on a display.
+    /// Returns the device that moves pictures, with the rates that the device needs on a display.
     fn device(self, display: &dyn Display) -> Option<Device> {
         let setting = match self {
             Self::RasterOffset => Reprojection::VDRT,
@@ -143,14 +145,14 @@ impl Evaluation {
         }
     }
 
-    /// Returns the periods of the window that are final and not evaluated yet.
+    /// Returns the periods of the result window whose results can no longer change and that are not evaluated yet.
     fn fields(&mut self, run: &FinalResults<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
         let fields = run.periods_from(self.next);
         self.next = self.next.max(run.until);
         fields
     }
 
-    /// Replaces the poses of the visible views by those that the run would have had without one cause of error.
+    /// Replaces the poses of the visible views by the poses that the run would have had without one cause of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
@@ -186,7 +188,8 @@ impl Evaluation {
         let mut centre = None;
         // Evaluate every pixel of the grid.
         for (i, (x, y, at)) in pixels.into_iter().enumerate() {
-            // What is lit was chosen when the pixel began to shine; where it is seen counts at the centre of its light.
+            // The pixel's content is fixed when the pixel begins to shine. Its position is evaluated at the middle of
+            // the time in which it shines.
             let pixel = Pixel { place: [x, y], begins: at, light: at + light.centre() };
             let error = match &self.content {
                 Content::Reprojected(reprojector) => self.moved_error(run, reprojector, field, pixel, collected),
@@ -228,7 +231,7 @@ impl Evaluation {
         }
     }
 
-    /// Returns the error of a pixel. If there is none, increments the counter of the reason.
+    /// Returns the error of a pixel. For a pixel without an error, increments the counter that states the reason.
     fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
@@ -245,7 +248,8 @@ impl Evaluation {
     fn error_of(&self, pixel: Pixel, drawn: &Drawn) -> Option<Misregistration> {
         let place = middle(pixel.place[0], pixel.place[1]);
         if matches!(self.content, Content::DelayedVideo) {
-            // The camera moves with the head, and its picture is shown with the one that was drawn for the same measurement.
+            // The camera moves with the head. Its picture is shown with the picture that was drawn for the same
+            // measurement of the head.
             let moment = self.judge.moment(drawn);
             let content = self.judge.content(drawn, place);
             return self.judge.error_between(place, &content, moment.measured_at?, moment.objects_at);
@@ -254,7 +258,8 @@ impl Evaluation {
         self.judge.error(place, drawn, evaluated_at)
     }
 
-    /// The error of a pixel that is moved to the newest pose, or why there is none.
+    /// Returns the error of a pixel that a device moves to the newest pose. For a pixel without an error, increments a
+    /// counter that states the reason.
     fn moved_error(
         &self,
         run: &FinalResults<'_>,
@@ -291,7 +296,7 @@ impl Evaluation {
         error
     }
 
-    /// Takes how far what a pixel shows moves across the screen while the pixel is lit.
+    /// Adds the distance that the content of a pixel moves across the screen while the pixel is lit.
     fn smear(&self, seen: &Seen, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
@@ -309,8 +314,9 @@ impl Evaluation {
         }
     }
 
-    /// Asks of many places of a field whether what is seen there lies beyond the edge of its picture. Where pictures are moved with depth
-    /// that is known of the pixels that are evaluated, and no others are asked.
+    /// Checks at many positions of a field if the visible content lies beyond the edge of its picture.
+    ///
+    /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
         let display = run.record.display();
         let view = &self.judge.view;
@@ -337,7 +343,7 @@ impl Evaluation {
     }
 }
 
-/// A pixel of a field, when it begins to shine, and the centre of its light.
+/// A pixel of a field: its position, the time when it begins to shine, and the middle of the time for which it shines.
 #[derive(Clone, Copy, Debug)]
 struct Pixel {
     place: [u32; 2],
@@ -351,12 +357,13 @@ struct Collected {
     grid: [Distribution; 2],
     centre: [Distribution; 2],
     fields_kept: usize,
-    /// Counters, and the errors of each field.
+    /// Numbers of pixels by result, and the errors of each field.
     errors: PixelErrors,
     eye: EyeSum,
 }
 
-/// Number of grid values kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for degrees.
+/// Number of grid errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
+/// degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {
@@ -366,7 +373,7 @@ impl Collected {
         Self { grid, centre: both(fields), fields_kept: fields, errors: PixelErrors::default(), eye }
     }
 
-    /// Adds the errors of a field that begins at the instant `begin`.
+    /// Adds the pixel errors of a field that begins at the instant `begin`.
     fn take(
         &mut self,
         field: PeriodNumber,
@@ -420,7 +427,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// A streaming observer that records the number of held views after each step of a run.
+    /// A streaming observer that records the number of views in memory after each step of a run.
     #[derive(Debug, Default)]
     struct Watched {
         sum: ErrorSum,
@@ -438,7 +445,7 @@ mod tests {
         }
     }
 
-    /// A run that discards its records holds no more views at its end than after the first time it discarded records.
+    /// A run that discards records has as many views in memory at its end as after the first discard, or fewer.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [

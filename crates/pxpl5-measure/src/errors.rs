@@ -1,4 +1,4 @@
-//! Pixel error: the distance between a pixel and the correct position of its content at the time of its light.
+//! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
 
 use crate::percentiles::Percentiles;
 use pxpl5_display::Display;
@@ -11,17 +11,17 @@ use std::fmt;
 /// Errors of one field (one display period).
 #[derive(Clone, Copy, PartialEq, Serialize)]
 pub struct FieldMisregistration {
-    /// Number of the evaluated display period.
+    /// Number of the display period in which the errors were evaluated.
     pub field: PeriodNumber,
     /// Start of the period in simulated time, in seconds.
     pub time_s: f64,
-    /// Mean error over the grid, in pixels.
+    /// Mean error over the pixels of the grid.
     pub mean_px: f64,
     /// Error of the pixel in the middle, in pixels.
     pub centre_px: f64,
 }
 
-/// Prints the name that the type had when hashes of reports were first published: the hash of a report covers this text.
+/// Prints the type's name from the first version with published report hashes. The hash of a report covers this text.
 impl fmt::Debug for FieldMisregistration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, time_s, mean_px, centre_px } = self;
@@ -33,27 +33,28 @@ impl fmt::Debug for FieldMisregistration {
 
 /// Errors over a grid of pixels and all fields of the result window.
 ///
-/// Only pixels of pictures that were complete, in time and shown within the window are evaluated. The other fields
-/// count the remaining pixels. Statistics of no pixels are NaN (null in JSON).
+/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The fields
+/// `behind`, `empty`, `incomplete` and `before` count the remaining pixels. Statistics of no pixels are NaN (null in
+/// JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
-    /// Distance from the correct position over the grid, in pixels.
+    /// Distance of grid pixels from their correct position, in pixels.
     pub pixels: Percentiles,
-    /// Angle between the displayed and the correct direction over the grid, in degrees.
+    /// Angle between the displayed and the correct direction of grid pixels, in degrees.
     pub degrees: Percentiles,
     /// Error of the pixel in the middle of the picture, in pixels.
     pub centre_px: Percentiles,
     /// Error of the pixel in the middle of the picture, in degrees.
     pub centre_deg: Percentiles,
-    /// Number of evaluated pixels over the grid and all fields.
+    /// Number of evaluated pixels: grid pixels of all fields.
     pub judged: u64,
-    /// Number of pixels whose content lies behind the eye at the time of their light.
+    /// Number of pixels whose content lies behind the eye at the time when the pixels are lit.
     pub behind: u64,
     /// Number of pixels that were lit before any picture was shown.
     pub empty: u64,
     /// Number of pixels from pictures that were not complete in time.
     pub incomplete: u64,
-    /// Number of pixels that still showed a picture from before the window, such as one from the start of the run.
+    /// Number of pixels that still showed a picture from before the result window, such as a picture from start-up.
     pub before: u64,
     /// Errors of each field, in the order of time.
     ///
@@ -74,7 +75,7 @@ const GRID: u32 = 5;
 /// Index of the pixel in the middle of the grid.
 pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
-/// Returns the evaluated pixels of a display period in scan order, each with the time of its light.
+/// Returns the evaluated pixels of a display period in scan order, each with the time at which it is lit.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let (first_row, row_distance) = display.rows_lit(period);
@@ -87,15 +88,15 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
             pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));
         }
     }
-    // Not every scan goes from the top; the middle stays in the middle.
+    // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
     pixels.sort_by_key(|(_, _, at)| *at);
     pixels
 }
 
-/// Columns and rows of the places that are checked against the edge of the picture.
+/// Numbers of columns and rows of the positions that are checked against the edge of the picture.
 const LATTICE: (u32, u32) = (16, 12);
 
-/// Returns the places of [`LATTICE`] in a period, each with the time of its light.
+/// Returns the pixels of [`LATTICE`] in a display period, each with the time at which it is lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let (first_row, distance) = display.rows_lit(period);
@@ -112,17 +113,17 @@ pub enum Showing {
     Plain,
     /// The raster is shifted while it is scanned out (VDRT).
     RasterOffset,
-    /// An ideal reference that uses no picture: each pixel shows the view predicted for the time of its light.
+    /// An ideal reference that uses no picture: each pixel shows the view predicted for the time at which it is lit.
     ///
     /// The prediction uses all tracker reports that the host has at that time. The reference is computed after the run
     /// and costs no simulated time.
     Ideal,
-    /// Moved to the newest pose by a device.
+    /// A device moves each picture to the newest pose.
     Reprojected(Reprojection),
-    /// As they were drawn, before a video of the real world that is delayed with them (I3D95, 2.1).
+    /// Pictures are shown as drawn, before a video of the real world that is delayed with them (I3D95, 2.1).
     ///
-    /// Both are of the instant at which the head was measured, so that the tracker's error remains. The world itself lags
-    /// by the time from the head to light.
+    /// Pictures and video show the instant at which the head was measured, so only the tracker's error remains. The
+    /// video lags behind the real world by the time from the measurement of the head until the pixels are lit.
     DelayedVideo,
 }
 

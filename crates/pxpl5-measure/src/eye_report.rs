@@ -1,4 +1,4 @@
-//! Results of the display before an eye: the smear of lit pixels, and the empty places of a device that moves pictures.
+//! Results of the display before an eye: the smear of lit pixels, and empty pixels after a device has moved pictures.
 
 use crate::distribution::Distribution;
 use crate::percentiles::Percentiles;
@@ -6,11 +6,11 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Results beside the pixel errors if pixels shine for some time, or if a device moves pictures on their way to the eye.
+/// Results in addition to the pixel errors. They exist if pixels shine for some time, or if a device moves pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
-    /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels light
-    /// for an instant.
+    /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
+    /// are lit for an instant.
     pub smear_px: Option<Percentiles>,
     /// Results of the device that moves pictures. `None` without one.
     pub reprojection: Option<ReprojectionReport>,
@@ -21,21 +21,22 @@ pub struct EyeReport {
 pub struct ReprojectionReport {
     /// Setting of the device.
     pub device: Reprojection,
-    /// Pixels that the device computes per second, of one eye.
+    /// Number of pixels that the device computes per second for one eye.
     pub pixels_per_s: f64,
-    /// Poses that the device takes per second.
+    /// Number of poses that the device uses per second.
     pub poses_per_s: f64,
-    /// Time from the measurement of the newest pose to light, in milliseconds.
+    /// Age of the newest pose when the pixel is lit: time since the measurement of the pose, in milliseconds.
     pub pose_age_ms: Percentiles,
-    /// Number of pixels that were checked for content in the picture.
+    /// Number of pixels for which the evaluation checked if the picture has content for them.
     pub looked_at: u64,
     /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
     pub empty_share: Option<f64>,
-    /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless pictures are moved with depth.
+    /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless the device uses
+    /// depth.
     pub disoccluded_share: Option<f64>,
 }
 
-/// The numbers of a device, from its setting and the display.
+/// The setting of a device, and the rates that follow from the setting and the display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,
@@ -56,9 +57,11 @@ pub(crate) struct EyeSum {
 }
 
 impl EyeSum {
-    /// Returns empty sums that keep up to `limit` numbers of a kind. `smears` is true if pixels are lit for more than an instant.
+    /// Returns empty sums that keep up to `limit` values of each kind. `smears` is true if pixels are lit for more than
+    /// an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
-        // The limit is the same in every run: numbers beyond it are summed up in another way, which shows in the last digit of a mean.
+        // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
+        // last digit of a mean.
         let limit = limit.min(KEPT_SAMPLES);
         let smear = smears.then(|| Distribution::keeping(limit));
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
@@ -69,21 +72,21 @@ impl EyeSum {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
 
-    /// Adds the time from the measurement of a pose to the light of a pixel.
+    /// Adds the time from the measurement of a pose until a pixel is lit.
     pub(crate) fn pose(&mut self, measured_at: Option<Time>, light: Time) {
         if let Some(measured_at) = measured_at {
             self.age_ms.push((light.0 as f64 - measured_at.0 as f64) * 1e-9);
         }
     }
 
-    /// Adds a pixel that was checked for content in the picture.
+    /// Adds a pixel for which the evaluation checked if the picture has content.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);
         self.hidden += u64::from(is_hidden);
     }
 
-    /// Returns the results. `None` if pixels light for an instant in their own places.
+    /// Returns the results. `None` if pixels are lit for an instant only and no device moves pictures.
     pub(crate) fn said(self) -> Option<EyeReport> {
         let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
         let reprojection = self.device.map(|device| ReprojectionReport {

@@ -13,9 +13,9 @@ pub struct FacesReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a face, including guard texels.
     pub face_texels: u64,
-    /// The moment at which the display latches the orientation.
+    /// The moment at which the display latches (samples and holds) the orientation of the head.
     pub latch: Latch,
-    /// From the latch to the light of the first pixel, in nanoseconds.
+    /// Time from the latching of an orientation until the first pixel that uses it is lit, in nanoseconds.
     pub pipeline_ns: f64,
     /// Number of orientations that the display accepted.
     pub matrix_loads: u64,
@@ -23,34 +23,34 @@ pub struct FacesReport {
     pub matrix_refused: u64,
     /// The display memories, starting with the one that is drawn most often.
     pub memories: Vec<MemoryReport>,
-    /// From the measurement of an orientation to the light of the picture's middle, in milliseconds. `None` without a
-    /// tracker.
+    /// Time from the measurement of an orientation until the middle of the picture is lit, in milliseconds. `None`
+    /// without a tracker.
     pub rotation_latency_ms: Option<Statistics>,
-    /// Parts of the rotation latency. Their means add up to the mean of the whole.
+    /// Parts of the rotation latency. The means of the parts add up to the mean of the rotation latency.
     pub rotation_latency_parts_ms: Vec<RotationPart>,
 }
 
 /// Results of one display memory in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MemoryReport {
-    /// Updates shown per second within the window. `None` if fewer than two updates were shown.
+    /// Updates shown per second within the result window. `None` if fewer than two updates were shown.
     pub updates_hz: Option<f64>,
-    /// Display periods between consecutive updates. `None` if fewer than two updates were shown.
+    /// Mean number of display periods between consecutive updates. `None` if fewer than two updates were shown.
     pub period_frames: Option<f64>,
     /// Number of updates shown in the whole run, including start-up.
     pub updates: u64,
     /// Number of structures of the scene in the memory at its last update.
     pub segments: usize,
-    /// Number of regions that arrived.
+    /// Number of regions that arrived at this memory.
     pub regions_copied: u64,
     /// Number of retraces at which a requested update was not complete.
     pub missed: u64,
-    /// Latency of the head's translation to the light of the picture's middle, in milliseconds, over all fields.
+    /// Latency from a translation of the head until the middle of the picture is lit, in milliseconds, over all fields.
     ///
     /// The latency starts at the measurement of the head. Without a tracker it starts when the memory becomes due.
     /// `None` before the first update, and in a run that discarded its records without a streaming observer.
     pub translation_latency_ms: Option<Statistics>,
-    /// Means of the parts of the translation latency, in milliseconds. They add up to its mean.
+    /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
     /// The parts are: measurement until the memory became due, due until shown, age of the shown update, and scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,

@@ -1,4 +1,4 @@
-//! Results that concern the head: from the streaming observer, or else computed from the records that the run kept.
+//! Results that concern the head: from the streaming observer, or else computed from the records still in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_sum::ErrorSum;
@@ -33,7 +33,7 @@ impl PixelErrors {
         Self::shown(outcome, Showing::Plain)
     }
 
-    /// Returns the errors of a run whose pictures are shown as `showing` says.
+    /// Returns the errors of a run in the display mode `showing`.
     ///
     /// A run that discarded its records ([`Outcome::has_discarded_records`]) covers all periods only if
     /// [`HeadSum`](crate::HeadSum) observed it and `showing` is the head's own display mode. Otherwise the result
@@ -61,29 +61,32 @@ fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (Pixel
 }
 
 impl EyeReport {
-    /// Evaluates a run with a head whose pictures are shown so; `None` without a head, and where pixels light for an instant in their own
-    /// places.
+    /// Evaluates a run with a head in the display mode `showing`.
+    ///
+    /// Returns `None` without a head. Also returns `None` if pixels are lit for an instant only and no device moves
+    /// pictures.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
         outcome.head().and_then(|_| judged(outcome, showing, None).1)
     }
 }
 
-/// Errors on the raster before the eyes, and what else an eye sees; `None` of a run without a head.
+/// Returns the pixel errors in the display mode of the head's display, and the results of the eye. Returns `None` for a
+/// run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
     Some(said.unwrap_or_else(|| judged(outcome, showing, None)))
 }
 
-/// Returns the pixel errors as the head's display shows the pictures, or `None` for a run without a head.
+/// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
 #[must_use]
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
     Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
 }
 
 impl Budget {
-    /// Returns the budget over the complete pictures in the window whose pose was measured.
+    /// Returns the mean time of each stage over the complete pictures in the result window whose pose was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {
@@ -94,7 +97,7 @@ impl Budget {
         sum.said()
     }
 
-    /// Returns the latency of each kept picture from the pose to the light of its middle, in milliseconds.
+    /// Returns the latency of each picture in memory, from the measured pose until the middle is lit, in milliseconds.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.settled();
@@ -116,7 +119,9 @@ impl Turns {
 }
 
 impl Steps {
-    /// Returns the latencies of a step for each memory of a run; none where the run dropped its records unobserved.
+    /// Returns the latencies of a step of the head, for each display memory of a run.
+    ///
+    /// The result is empty if the run discarded its records without a streaming observer.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
         if let Some(said) = HeadResults::from_observer(outcome) {
             return said.steps.clone();

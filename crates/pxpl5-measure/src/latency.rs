@@ -3,13 +3,14 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of each complete picture in the window, as far as kept ([`pxpl5_run::Keep`]).
+/// Returns the latency parts of each complete picture in the result window whose records are in memory
+/// ([`pxpl5_run::Keep`]).
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()
 }
 
-/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the window.
+/// Returns the statistics of each latency part in milliseconds, over all complete pictures in the result window.
 pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStatistics> {
     let parts = LATENCY_PARTS.iter().zip(&outcome.tally().parts_ms);
     let named = parts.map(|(part, ms): (_, &Samples)| LatencyPartStatistics {
@@ -32,7 +33,7 @@ pub struct LatencyPartStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Prints the name that the type had when hashes of reports were first published: the hash of a report covers this text.
+/// Prints the type's name from the first version with published report hashes. The hash of a report covers this text.
 impl fmt::Debug for LatencyPartStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, in_published_latency, statistics } = self;
@@ -42,7 +43,7 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface, or of a pair of surfaces, up to an event.
+/// Latency of one surface, or of a pair of surfaces, until an event.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
     /// Label of the surface (`left`, `right`), or `pair`. A pair lasts from the first TRANSFORM until both surfaces
@@ -55,9 +56,9 @@ pub struct SurfaceStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Returns the latencies of both surfaces and of the pair over the complete pictures in the window.
+/// Returns the latencies of both surfaces and of the pair over the complete pictures in the result window.
 ///
-/// The result is empty if the surfaces have no TRANSFORM of their own.
+/// The result is empty if the surfaces share one TRANSFORM.
 #[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let labels: Vec<&str> = outcome.record().surfaces().map(|(_, surface)| surface.label).collect();

@@ -4,19 +4,19 @@ use tracking::motion::Motion;
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S};
 use tracking::view::HmdView;
 
-/// Error over time in the middle of the picture, caused by a constant latency. One point per NTSC field.
+/// Error over time in the middle of the picture, caused by a constant latency. The curve has one point per NTSC field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// Time from the drawn pose to its light, in milliseconds.
+    /// Time from the drawn pose until the picture is lit, in milliseconds.
     pub latency_ms: u64,
-    /// Pairs of time in seconds and error in pixels.
+    /// Points of the curve: time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,
 }
 
 impl LatencyCurve {
-    /// Computes the curve over `seconds`: at time t the display shows the pose of t - `latency_ms`.
+    /// Computes the curve over `seconds`. At time t the display shows the head's pose at t - `latency_ms`.
     ///
-    /// The error is that of a point `distance_m` metres ahead of the head.
+    /// The error is the displacement of a point `distance_m` metres ahead of the head.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
         let view = HmdView::ntsc();

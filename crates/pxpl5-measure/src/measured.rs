@@ -14,13 +14,13 @@ pub trait Measured {
     /// Returns all results as numbers.
     fn report(&self) -> Report;
 
-    /// Returns the latency parts of each complete picture in the window, as far as kept.
+    /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
-    /// Returns the latencies of both eyes and of the pair. Empty if the eyes have no TRANSFORM of their own.
+    /// Returns the latencies of both eyes and of the pair. Empty if the eyes share one TRANSFORM.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
 
-    /// Returns the pixel errors as the head's display shows the pictures, or `None` for a run without a head.
+    /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
     fn pixel_errors(&self) -> Option<PixelErrors>;
 
     /// Returns the picture that the viewer of a surface sees at the end of the run.

@@ -1,4 +1,4 @@
-//! Content of the screen's pixels behind a device that moves pictures.
+//! Content of the screen's pixels after a device has moved pictures.
 
 use crate::content::Content;
 use crate::drawn::Drawn;
@@ -12,23 +12,24 @@ use pxpl5_wire::PeriodNumber;
 use tracking::Pose;
 use tracking::view::HmdView;
 
-/// Content of a pixel of the screen.
+/// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Moved {
-    /// Content of a picture, with the pose that the picture was drawn for.
+    /// Content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
-    /// No content, because the place of the picture shows nothing or no complete picture.
+    /// No content, because this position of the picture shows nothing or no complete picture.
     NotComplete(Seen),
-    /// No content, because the place lies beyond the edge of the picture.
+    /// No content, because the position lies beyond the edge of the picture.
     Beyond,
-    /// No content, because something hides it in the picture.
+    /// No content, because a nearer object hides the content in the picture.
     Hidden,
 }
 
-/// Most steps until a place agrees with the pose that it was drawn for. Parts of a picture may have poses of their own.
+/// Largest number of iterations until a picture position agrees with its pose. Parts of a picture can have different
+/// poses.
 const STEPS: usize = 4;
 
-/// Returns the content of a pixel that begins to light at `at`, with its picture moved to a pose.
+/// Returns the content of a pixel that is lit from the time `at`, with its picture moved to a pose.
 pub(crate) fn moved(
     (judge, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
     (by, now): (Warp, &Pose),
@@ -55,7 +56,9 @@ pub(crate) fn moved(
     last
 }
 
-/// Returns the content that moves to a place, and its place in the picture. If there is none, `reason` says why.
+/// Returns the content that moves to a screen position, and its position in the picture.
+///
+/// Returns `None` if there is no such content. `reason` then states why.
 fn source(
     judge: &Evaluator,
     by: Warp,
@@ -65,7 +68,7 @@ fn source(
     reason: &mut Moved,
 ) -> Option<(Content, DVec2)> {
     let moment = judge.moment(drawn);
-    // Faces are several pictures, each with a depth of its own: of them the turn alone is left to a device.
+    // Cube faces are several pictures, each with its own depth. For them, a device corrects only the rotation.
     if by == Warp::Depth && !matches!(drawn, Drawn::Faces(_)) {
         return match judge.warped(&moment, now, target) {
             Warped::Seen(content, source) => Some((content, source)),
@@ -85,7 +88,7 @@ fn source(
     Some((judge.content(drawn, source), source))
 }
 
-/// Returns the pixel of a place, in a row that its field lights.
+/// Returns the pixel at a position, in the nearest row that its field lights.
 fn pixel_at(view: &HmdView, place: DVec2, (first_row, distance): (u32, u32)) -> [u32; 2] {
     let last = view.centre_px() * 2.0 - DVec2::ONE;
     let inside = place.floor().clamp(DVec2::ZERO, last);

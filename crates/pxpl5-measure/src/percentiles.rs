@@ -27,7 +27,7 @@ impl Default for Percentiles {
 }
 
 impl Percentiles {
-    /// Computes the statistics of `values`, none of which may be NaN.
+    /// Computes the statistics of `values`. No value must be NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();

@@ -1,4 +1,4 @@
-//! Pictures behind a device that moves them to the newest pose.
+//! Pictures after a device has moved them to the newest pose.
 
 use crate::registration::{Evaluator, Warped, middle};
 use crate::reproject::{Move, fill_row, move_row};
@@ -27,7 +27,7 @@ impl<'a> PictureMover<'a> {
         Self { judge, shown: Shown::of_run(&run, head), head: Arc::clone(head), setting, run }
     }
 
-    /// Writes the rows that a field lights, moved; rows of which nothing is drawn stay as they are.
+    /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
         let (first_row, distance) = display.rows_lit(field);
@@ -42,7 +42,8 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Pieces of a row that have one pose: those of regions, and single pixels where each column has a pose of its own.
+    /// Returns the ranges of pixels in a row that have one pose: one range per region, or single pixels if each column
+    /// has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
         let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };

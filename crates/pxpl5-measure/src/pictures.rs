@@ -14,7 +14,7 @@ use pxpl5_machine::Record;
 use pxpl5_run::{Outcome, Pixels};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 
-/// Returns two pictures next to each other, the left eye on the left. The height is that of the taller picture.
+/// Returns two pictures next to each other, the left eye on the left. The result is as high as the taller picture.
 #[must_use]
 pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
     let mut both = RgbImage::new(left.width() + right.width(), left.height().max(right.height()));

@@ -31,9 +31,9 @@ impl Eq for Quantity {}
 
 #[derive(Debug)]
 enum Value {
-    /// Computed from a summary, which every level of modelling gives.
+    /// Computed from a summary, which every level of modelling provides.
     OfSummary(fn(&Summary) -> f64),
-    /// Computed from a simulated run.
+    /// Computed from a simulated run and its report.
     OfRun(fn(&Outcome, &Report) -> Option<f64>),
 }
 
@@ -173,7 +173,7 @@ pub static QUANTITIES: [Quantity; 55] = [
     of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
-/// Returns a count over the pictures due, or NaN if no picture was due.
+/// Returns a number of pictures due, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }
@@ -222,7 +222,7 @@ impl Measure {
 /// Results of an experiment at any level of modelling.
 #[derive(Debug)]
 pub struct Results {
-    /// Results that every level of modelling gives.
+    /// Results that every level of modelling provides.
     pub summary: Summary,
     /// The simulated run and its report. `None` at the analytic level.
     pub run: Option<(Outcome, Report)>,
@@ -236,14 +236,14 @@ impl Results {
         Self { summary: summary(&outcome), run: Some((outcome, report)) }
     }
 
-    /// Returns the results of a closed form, without a run.
+    /// Returns the results of an analytic model, without a simulated run.
     #[must_use]
     pub const fn of_closed_form(summary: Summary) -> Self {
         Self { summary, run: None }
     }
 }
 
-/// Returns the mean time of a stage over the pictures in the window. `None` if no picture has this stage.
+/// Returns the mean time of a stage over the pictures in the result window. `None` if no picture has this stage.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

@@ -1,4 +1,4 @@
-//! Raster offset of VDRT: the display shifts the picture during scan-out to correct its pose.
+//! Raster offset of VDRT: the display shifts the picture during scan-out to correct the drawn head pose.
 
 use crate::picture_mover::PictureMover;
 use crate::shown::{Drawn, Shown, view_of};
@@ -45,7 +45,8 @@ impl<'a> Vdrt<'a> {
     }
 }
 
-/// Returns the offset of a field whose picture was drawn for a pose, using the reports known at the field's start.
+/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports known at the
+/// field's start.
 pub(crate) fn offset(
     estimator: &mut Estimator,
     display: &dyn Display,
@@ -63,8 +64,8 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The way in which a display moves the pictures of a run: the raster offset of every field, or a device that moves
-/// pictures to the newest pose.
+/// The corrections that a display applies to the pictures of a run: a raster offset for every field, or a device that
+/// moves pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
@@ -80,7 +81,7 @@ enum MovedBy<'a> {
 }
 
 impl<'a> RasterOffsets<'a> {
-    /// Returns the moves of a run's pictures, or `None` if the head's display shows them in their own places.
+    /// Returns the corrections for a run's pictures, or `None` if the head's display shows pictures as drawn.
     ///
     /// Under VDRT a field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
     #[must_use]
@@ -106,15 +107,17 @@ impl<'a> RasterOffsets<'a> {
         Some(Self { display, view, moved_by: MovedBy::Offsets(offsets.collect()) })
     }
 
-    /// Returns the offset in one display period. `None` if nothing is shown, if the picture was not drawn for a single
-    /// pose, or if a device moves pictures otherwise.
+    /// Returns the raster offset in one display period.
+    ///
+    /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if
+    /// another device moves pictures.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         let MovedBy::Offsets(offsets) = &self.moved_by else { return None };
         offsets.get(usize::try_from(field.0).ok()?)?.as_ref()
     }
 
-    /// Copies the rows lit in a field from `screen` to `shifted`, moved by the field's offset in whole pixels.
+    /// Copies the rows that a field lights from `screen` to `shifted`, moved by the field's offset in whole pixels.
     ///
     /// Uncovered pixels become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
@@ -135,7 +138,7 @@ impl<'a> RasterOffsets<'a> {
         }
     }
 
-    /// Returns the pixel that the shift moves to a place, taken from a row of the same field.
+    /// Returns the source pixel that the shift moves to a given position. The pixel comes from a row of the same field.
     fn shifted_pixel(
         &self,
         screen: &RgbImage,
@@ -157,7 +160,7 @@ impl<'a> RasterOffsets<'a> {
     }
 }
 
-/// Returns the single pose for which a whole field was drawn, if there is one.
+/// Returns the pose for which a whole field was drawn, or `None` if different poses were used.
 pub(crate) fn pose_of_field(run: &FinalResults<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
     let display = run.record.display();
     let x = display.surfaces().first()?.width / 2;

@@ -1,4 +1,5 @@
-//! Registration error: distance between a pixel and the correct position of its content at the time of its light.
+//! Registration error: distance between a pixel and the correct position of its content at the time when the pixel is
+//! lit.
 
 use crate::content::{Content, Contents};
 use crate::reproject::direction;
@@ -30,12 +31,13 @@ impl Evaluator {
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
 
-    /// Returns the direction of a picture position in head axes, scaled to 1 m of depth.
+    /// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
     fn direction(&self, place: DVec2) -> DVec3 {
         direction(&self.view, place)
     }
 
-    /// Returns the content at a picture position of a view. A ray that hits nothing gets a point at `distance_m`.
+    /// Returns the scene point visible at a picture position of a view. A ray that hits nothing gets a point at
+    /// `distance_m`.
     fn met(&self, moment: &Moment, place: DVec2) -> Content {
         let Pose { position, orientation } = moment.pose;
         let direction = orientation * self.direction(place);
@@ -43,7 +45,8 @@ impl Evaluator {
         met.unwrap_or_else(|| Content::fixed(position + direction * self.distance_m))
     }
 
-    /// Returns the nearest content at a picture position over several memories. The lowest memory wins a tie.
+    /// Returns the nearest scene point at a picture position over several display memories. The lowest memory wins a
+    /// tie.
     ///
     /// If no memory has content there, the result is a point at `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
@@ -65,7 +68,7 @@ impl Evaluator {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
             Drawn::AdvancedMotion(moment, shift) => self.met(moment, place - *shift),
-            // Find by iteration the content that interpolation moves to this place.
+            // Find by iteration the content that interpolation moves to this position.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
                 let mut guess = place;
@@ -81,20 +84,20 @@ impl Evaluator {
         }
     }
 
-    /// Returns the error of a picture position that lights at `at`, relative to the position of its content at that
-    /// time.
+    /// Returns the error of a picture position that is lit at the time `at`, relative to the correct position of its
+    /// content at this time.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<Misregistration> {
         self.error_of(place, &self.content(drawn, place), at)
     }
 
-    /// Returns the error of content at a place of the screen. `None` if the content should be behind the eye.
+    /// Returns the error of content displayed at a screen position. `None` if the correct position is behind the eye.
     pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the error of content with the head's pose of one time and the moving objects of another.
+    /// Returns the error of content, with the head's pose at one time and the moving objects at another time.
     pub(crate) fn error_between(
         &self,
         place: DVec2,
@@ -110,22 +113,22 @@ impl Evaluator {
     }
 }
 
-/// Content that a picture with depth has for a place of the screen, seen from another pose.
+/// Content at a screen position, when a picture with depth is seen from another pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Warped {
-    /// The content, with its place in the picture.
+    /// The visible content, with its position in the picture.
     Seen(Content, DVec2),
-    /// No content, because it lies beyond the edge of the picture.
+    /// No content, because the position lies beyond the edge of the picture.
     Beyond,
-    /// No content, because something hides it in the picture.
+    /// No content, because a nearer object hides the content in the picture.
     Hidden,
 }
 
-/// Least difference in depth, relative to the depth, by which one content hides another.
+/// Smallest relative difference in depth at which one content hides another.
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {
-    /// Returns the content of a picture at a place of the screen, with the picture moved to a pose by its depth.
+    /// Returns the content of a picture at a screen position, after the picture is moved to a pose by its depth.
     pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
@@ -139,7 +142,8 @@ impl Evaluator {
         if is_hidden { Warped::Hidden } else { Warped::Seen(content, source) }
     }
 
-    /// Returns the point at which a ray meets the background of a picture, a plane at the scene's distance.
+    /// Returns the point at which a ray meets the background of a picture. The background is a plane at the scene's
+    /// distance.
     fn on_background(&self, drawn: &Moment, now: &Pose, ahead: DVec3) -> Option<Content> {
         let axis = drawn.pose.orientation * DVec3::NEG_Z;
         let begin = (now.position - drawn.pose.position).dot(axis);
@@ -147,7 +151,7 @@ impl Evaluator {
         (way.is_finite() && way > 0.0).then(|| Content::fixed(now.position + ahead * way))
     }
 
-    /// Returns the moment for which a pixel was drawn. Between two views it is interpolated.
+    /// Returns the pose and time for which a pixel was drawn. A pixel between two views gets interpolated values.
     pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
         match drawn {
             Drawn::View(moment) | Drawn::AdvancedMotion(moment, _) => *moment,
@@ -156,7 +160,9 @@ impl Evaluator {
         }
     }
 
-    /// Returns the distance that content moves across the screen between two times, in pixels. `None` if it is behind the eye.
+    /// Returns the distance that content moves across the screen between two times, in pixels.
+    ///
+    /// Returns `None` if the content is behind the eye.
     pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {
         let place = |at: Time| {
             let point = self.contents.place(content, at);
@@ -166,7 +172,7 @@ impl Evaluator {
     }
 }
 
-/// Interpolates between two moments. `part` is 0 at `from` and 1 at `to`.
+/// Interpolates poses and times between two moments. `part` is 0 at `from` and 1 at `to`.
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
     let begin = from.objects_at.0 as f64;
     let end = to.objects_at.0 as f64;
@@ -183,7 +189,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Evaluates the registration error of single pixels of a run.
+/// Computes the registration error of single pixels of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: FinalResults<'a>,
@@ -192,7 +198,8 @@ pub struct Registration<'a> {
 }
 
 impl<'a> Registration<'a> {
-    /// Prepares the evaluation of a run, as far as its records are kept. `None` for a run without a head.
+    /// Prepares the evaluation of a run from the records that remain in memory. Returns `None` for a run without a
+    /// head.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let run = outcome.settled();
@@ -200,7 +207,7 @@ impl<'a> Registration<'a> {
         Some(Self { judge: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
-    /// Returns the error of a pixel in a field that scans its line.
+    /// Returns the error of a pixel in a field that scans the pixel's line.
     ///
     /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
     #[must_use]
@@ -225,7 +232,7 @@ mod tests {
         assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
     }
 
-    /// Interpolates objects and the head with the same factor.
+    /// Interpolates the positions of objects and the pose of the head with the same factor.
     #[test]
     fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };

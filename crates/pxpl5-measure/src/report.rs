@@ -25,7 +25,7 @@ use tracking::predict::{PredictorConfig, Training};
 pub struct Report {
     /// Name and version of this record's layout.
     pub schema: String,
-    /// Version of the program that made the report.
+    /// Version of the program that wrote the report.
     pub version: String,
     /// Name of the machine's preset.
     pub machine: String,
@@ -45,8 +45,8 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// Warnings, such as parameters outside the range that the sources allow.
     pub warnings: Vec<String>,
-    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than was
-    /// drawn.
+    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than the
+    /// pipeline drew.
     pub display_faults: Vec<String>,
     /// Number of graphics processors in the machine, including the master.
     pub n_gps: usize,
@@ -62,33 +62,36 @@ pub struct Report {
     pub fields: u64,
     /// The display periods over which latencies, pictures due, errors and rates are computed.
     ///
-    /// `None` if the run ended before the window began.
+    /// `None` if the run ended before the window of these periods began.
     pub window: Option<ResultWindow>,
-    /// Number of complete pictures in the window, over which the statistics are computed.
+    /// Number of complete pictures in the result window. The statistics are computed over these pictures.
     pub pictures: usize,
     /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
     /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
-    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose to light.
+    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose until the picture is
+    /// lit.
     pub latency_parts_ms: Vec<LatencyPartStatistics>,
-    /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds.
+    /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
+    /// lit.
     ///
-    /// Empty if the eyes have no TRANSFORM of their own.
+    /// Empty if the eyes share one TRANSFORM.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
-    /// Number of complete pictures shown in the whole run, including warm-up.
+    /// Number of complete pictures shown in the whole run, including start-up.
     pub shown: u64,
-    /// Complete new pictures per second within the window. `None` if fewer than two were shown.
+    /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
-    /// The pictures due in the window, counted by result. `None` if no picture was due.
+    /// Number of pictures due in the result window, by result. `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// Definition of a picture due: when it is due, when it is in time, and which pictures are counted.
+    /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
+    /// count.
     pub due_definition: String,
     /// Number of pictures due that were not shown: late, incomplete or missed.
     pub missed_retraces: Option<u64>,
     /// Warning that the scene is too heavy for the pipeline, with advice. `None` if the load is acceptable.
     pub too_heavy: Option<TooHeavy>,
-    /// True if the pictures that the viewer sees at the end of the run are complete.
+    /// True if each picture that the viewer sees at the end of the run is complete.
     pub ends_complete: bool,
     /// Number of regions that arrived after their deadline.
     pub late_regions: usize,
@@ -99,19 +102,21 @@ pub struct Report {
     /// Results that concern the head. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
-    /// Smear, and results of a device that moves pictures. `None` if pixels light for an instant in their own places.
+    /// Smear, and results of a device that moves pictures.
+    ///
+    /// `None` if pixels are lit for an instant only and no device moves pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eye: Option<EyeReport>,
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. Displays with faces around the head have optics of their own.
+    /// Head-mounted display before the viewer's eyes. A display with faces around the head has its own optics instead.
     pub hmd: HmdConfig,
-    /// How busy each kind of board was; nothing of a machine that has not run.
+    /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,
-    /// Waits that make up the latency of the last complete pictures. `None` if no picture was complete.
+    /// Chain of waits that make up the latency of the last complete pictures. `None` if no picture was complete.
     pub critical_path: Option<CriticalPath>,
-    /// Hash of all events of the run and of the statistics of this report up to `arp`.
+    /// Hash of all events of the run and of this report's statistics, up to the field `arp`.
     pub trace_hash: String,
     /// Number of events that the simulation handled.
     pub events: u64,
@@ -119,22 +124,23 @@ pub struct Report {
     ///
     /// Each corner of a triangle and each centre of a sphere counts once per view.
     pub vertex_transforms: u64,
-    /// Time that the run took on the host computer, in seconds. `None` on a host without a clock.
+    /// Real time that the run took on the host computer, in seconds. `None` on a host without a clock.
     pub host_seconds: Option<f64>,
 }
 
-/// Results that concern the head: tracker, prediction, latency to light and registration error.
+/// Results that concern the head: tracker, prediction, latency until pixels are lit, and registration error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeadReport {
     /// Name of the tracker that reported the head's pose.
     pub tracker: String,
     /// Name of the predictor between tracker and pipeline.
     pub predictor: String,
-    /// The instant of the shown picture that a view is predicted for.
+    /// The instant for which the predictor predicts the head's pose, relative to the time at which the picture is
+    /// shown.
     pub aim: Aim,
     /// Parameters of the predictor in this run.
     pub prediction: PredictorConfig,
-    /// Data on which the predictor's parameters were tuned. `None` if the user set the parameters.
+    /// Data from which the predictor's parameters were tuned. `None` if the user set the parameters.
     pub training: Option<Training>,
     /// Hash of all settings of the head, including the parameters of its predictor.
     pub fingerprint: String,
@@ -142,7 +148,7 @@ pub struct HeadReport {
     pub judged_at_m: Option<f64>,
     /// Raster of the head-mounted display: plain or shifted.
     pub display: Raster,
-    /// Latency from the head's pose to light by stage, in milliseconds.
+    /// Latency from the measurement of the head's pose until the picture is lit, by stage, in milliseconds.
     pub end_to_end: Budget,
     /// Registration error of the displayed pixels.
     pub error: PixelErrors,
@@ -167,7 +173,7 @@ impl HeadReport {
     }
 }
 
-/// Returns the head-mounted display with the number of pixels of the first surface.
+/// Returns the head-mounted display, with the resolution of the first surface.
 fn hmd_of(outcome: &Outcome) -> HmdConfig {
     let hmd = *outcome.experiment().hmd();
     let surface = outcome.record().display().surfaces().first();
@@ -175,8 +181,8 @@ fn hmd_of(outcome: &Outcome) -> HmdConfig {
 }
 
 impl Report {
-    /// Returns the number of region lines overwritten before they were shown. `None` if the display does not count
-    /// them.
+    /// Returns the number of region lines that were overwritten before the display showed them. `None` if the display
+    /// does not count them.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
@@ -251,7 +257,7 @@ impl Report {
             late_regions: tally.late_regions as usize,
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
-            // Parts that only some runs have.
+            // Results that only some runs have.
             head,
             eye: eye.flatten(),
             arp: FacesReport::of(outcome),
@@ -289,7 +295,8 @@ impl Report {
     }
 }
 
-/// Computes, without storing the text, the trace hash of a record with the fact 9 and the bytes of a text at time zero.
+/// Computes the trace hash of a text without storing the text: one record at time zero with the fact 9 and the text's
+/// bytes.
 ///
 /// The text of a long run would be large.
 struct HashedText(u64);

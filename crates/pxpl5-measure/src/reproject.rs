@@ -1,4 +1,4 @@
-//! Moving pictures to another pose: where each pixel comes from, and the pixels themselves.
+//! Moves pictures to another pose: computes the source of each pixel, and copies the pixels.
 
 use glam::{DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
@@ -7,23 +7,26 @@ use std::ops::Range;
 use tracking::Pose;
 use tracking::view::{HmdView, RasterOffset};
 
-/// The direction in head axes that a place of the picture shows, 1 m deep.
+/// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
 pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
     let from_centre = (place - view.centre_px()) / view.focal_px();
     DVec3::new(from_centre.x, -from_centre.y, -1.0)
 }
 
-/// How places of the screen come from those of a picture that was drawn for another pose, without its depth.
+/// The mapping from screen positions to positions in a picture that was drawn for another pose. Depth is ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Move {
-    /// Shifted as a whole, pixels.
+    /// The whole picture is shifted by this offset, in pixels.
     Shift(DVec2),
-    /// Turned: from the axes of the head now to those of the head that the picture was drawn for.
+    /// The view is rotated, from the axes of the head now to the axes of the head for which the picture was drawn.
     Turn(DQuat),
 }
 
 impl Move {
-    /// The move from a pose that a picture was drawn for to the newest one. Depth is left to who has it: without it a turn remains.
+    /// Returns the mapping from the pose for which a picture was drawn to the newest pose.
+    ///
+    /// This mapping ignores depth, so [`Warp::Depth`] gives only the rotation. Callers that know the depth must treat
+    /// it separately.
     pub(crate) fn between(by: Warp, view: &HmdView, drawn_for: &Pose, now: &Pose) -> Self {
         match by {
             Warp::Shift => Self::Shift(RasterOffset::between(drawn_for, now, 0).shift_px(view, 0)),
@@ -31,7 +34,7 @@ impl Move {
         }
     }
 
-    /// The place of the picture that is seen at a place of the screen; `None` where that is behind the picture's eye.
+    /// Returns the picture position that is seen at a screen position. `None` if it lies behind the picture's eye.
     pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),
@@ -40,10 +43,12 @@ impl Move {
     }
 }
 
-/// Rows of a picture that belong to one field: the first, and the distance to the next.
+/// Rows of a picture that belong to one field: the first row, and the distance to the next row.
 pub(crate) type Rows = (u32, u32);
 
-/// Writes some pixels of a row, each from a place of the source; black where the source has none. Returns how many those were.
+/// Writes some pixels of a row, each copied from a position of the source picture.
+///
+/// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
     source: &RgbImage,
     (first_row, distance): Rows,
@@ -64,7 +69,7 @@ pub(crate) fn fill_row(
             empty += 1;
             continue;
         };
-        // Of an interlaced picture only the rows of its field are there: the nearest of them.
+        // An interlaced picture has only the rows of its field. Take the nearest of these rows.
         let row =
             if distance == 1 { from.y as u32 } else { nearest_row(from.y, (first_row, distance), source.height()) };
         let at = (row as usize * source.width() as usize + from.x as usize) * 3;
@@ -73,14 +78,14 @@ pub(crate) fn fill_row(
     empty
 }
 
-/// The row of a field that is nearest to a place.
+/// Returns the row of a field that is nearest to a vertical position.
 fn nearest_row(y: f64, (first_row, distance): Rows, height: u32) -> u32 {
     let number = (y - 0.5 - f64::from(first_row)) / f64::from(distance);
     let last = (height - 1 - first_row) / distance;
     ((number.round().max(0.0) as u32).min(last)) * distance + first_row
 }
 
-/// Writes some pixels of a row of a picture that is moved. Returns how many are empty.
+/// Writes some pixels of one row of a moved picture. Returns the number of pixels without a source.
 pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,
@@ -95,7 +100,7 @@ pub(crate) fn move_row(
             fill_row(source, rows, (y, xs), |x| Some(DVec2::new(from.x + f64::from(x), from.y)), out)
         }
         Move::Turn(turn) => {
-            // Along a row the direction goes straight on, so that a pixel costs one division.
+            // Along a row, the direction changes by a constant step, so each pixel costs only one division.
             let ray = *turn * direction(view, begin);
             let step = *turn * (DVec3::X / view.focal_px());
             let (centre, focal) = (view.centre_px(), view.focal_px());
@@ -109,12 +114,14 @@ pub(crate) fn move_row(
     }
 }
 
-/// Moves a whole picture from the pose that it was drawn for to another one, by a shift or a turn. Returns it, each pixel the nearest of the
-/// picture's, and how many of its pixels are empty: those are black. Without depth [`Warp::Depth`] is a turn.
+/// Moves a whole picture from the pose for which it was drawn to another pose, by a shift or a rotation.
+///
+/// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
+/// and the number of these black pixels. [`Warp::Depth`] is treated as a rotation, because no depth is known here.
 ///
 /// # Panics
 ///
-/// If the picture has another size than the view.
+/// Panics if the picture and the view differ in size.
 #[must_use]
 pub fn reproject(picture: &RgbImage, view: &HmdView, by: Warp, drawn_for: &Pose, now: &Pose) -> (RgbImage, u64) {
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
@@ -131,7 +138,7 @@ mod tests {
     use super::*;
     use tracking::rotation;
 
-    /// A picture of which every pixel tells its place.
+    /// Returns a picture in which the colour of every pixel encodes its position.
     fn places(width: u32, height: u32) -> RgbImage {
         RgbImage::from_fn(width, height, |x, y| Rgb([(x >> 8) as u8 + 1, x as u8, y as u8]))
     }
@@ -145,7 +152,8 @@ mod tests {
         }
     }
 
-    /// A turn to the left by a brings to column x, from the middle, what was at f tan(atan(x / f) - a).
+    /// Under a turn to the left by angle a, column x (counted from the middle) shows the source column `f tan(atan(x /
+    /// f) - a)`.
     #[test]
     fn under_a_turn_columns_come_from_where_the_tangents_say() {
         let view = HmdView::ntsc();
@@ -164,7 +172,7 @@ mod tests {
                 counted += 1;
             }
         }
-        // The middle row has as many empty columns as the tangents leave out; rows beside it at least as many.
+        // The middle row has as many empty columns as the tangents leave out. All other rows have at least as many.
         assert!(counted > 20 && empty >= counted * 480, "{counted} {empty}");
     }
 

@@ -1,4 +1,4 @@
-//! Poses to which a device moves pictures. Each part of a scan takes the newest pose.
+//! Poses to which a device moves pictures. Each part of a scan (field, strip or line) uses the newest pose.
 
 use pxpl5_display::{Display, Scan};
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
@@ -9,12 +9,12 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The newest pose of a part of a scan.
+/// The newest pose for one part of a scan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewestPose {
-    /// The pose, predicted for the middle of the part's light.
+    /// The pose, predicted for the middle of the time in which the part is lit.
     pub(crate) pose: Pose,
-    /// Time at which its report was measured. `None` before the first report.
+    /// Time at which the tracker measured the report behind the pose. `None` before the first report.
     pub(crate) measured_at: Option<Time>,
 }
 
@@ -23,7 +23,7 @@ pub(crate) struct Reprojector {
     pub(crate) setting: Reprojection,
     estimator: Estimator,
     head: Arc<HeadViews>,
-    /// Poses of the latest field, by the number of the part.
+    /// Poses of the latest field, by the index of the part.
     poses: BTreeMap<u32, NewestPose>,
 }
 
@@ -39,7 +39,8 @@ impl Reprojector {
         Self { setting, estimator, head: Arc::clone(head), poses: BTreeMap::new() }
     }
 
-    /// Takes the poses of the parts of a field in which `places` lie. Fields must come in rising order.
+    /// Determines the poses of a field's parts that contain any of the pixels `places`. Fields must come in ascending
+    /// order.
     pub(crate) fn begin(&mut self, display: &dyn Display, field: PeriodNumber, places: impl Iterator<Item = [u32; 2]>) {
         let parts: BTreeSet<u32> = places.map(|place| part(display, self.setting.every, place)).collect();
         let light = |part: u32| Some((part, lit(display, self.setting.every, part, field)?));
@@ -58,13 +59,14 @@ impl Reprojector {
         }
     }
 
-    /// Returns the newest pose of the part in which a place lies. `None` unless `begin` had a place of that part.
+    /// Returns the newest pose of the part that contains a pixel. `None` unless `begin` was given a pixel of the same
+    /// part.
     pub(crate) fn newest(&self, display: &dyn Display, place: [u32; 2]) -> Option<&NewestPose> {
         self.poses.get(&part(display, self.setting.every, place))
     }
 }
 
-/// Returns the number of the part of a scan in which a place lies.
+/// Returns the index of the part of a scan that contains a pixel.
 fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     let along = match display.light().scan {
         Scan::Down | Scan::Up => y,
@@ -78,7 +80,7 @@ fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     }
 }
 
-/// Returns the times at which the first and the last pixel of a part light. `None` if no pixel does.
+/// Returns the times at which the first and the last pixel of a part are lit. `None` if no pixel is lit.
 fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> Option<(Time, Time)> {
     let surface = display.surfaces().first()?;
     let size = [surface.width, surface.height];

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-/// A resource that a piece of a latency waits for.
+/// A resource for which a picture waits during a part of its latency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resource {
-    /// The display's next retrace, or its beam.
+    /// Wait for the display's next retrace, or for its beam.
     Retrace,
-    /// COPY: pixels go into a port of a display.
+    /// COPY: pixels are transferred into a port of a display.
     Ports,
     /// COPY: pixels wait for a channel of the ring.
     Ring,
@@ -18,16 +18,16 @@ pub enum Resource {
     BackingStore,
     /// EDIT and TRANSFORM on the graphics processors.
     Transform,
-    /// Messages and tokens between graphics processors and to renderers: their software and their way.
+    /// Messages and tokens between graphics processors and to renderers: time of the software and of the transfer.
     Messages,
     /// SEND on the host.
     Host,
-    /// Nothing that the records tell.
+    /// Time that the records do not explain.
     Other,
 }
 
 impl Resource {
-    /// All of them, from the screen back to the host.
+    /// All resources, in the order from the screen back to the host.
     pub const ALL: [Self; 9] = [
         Self::Retrace,
         Self::Ports,
@@ -40,7 +40,7 @@ impl Resource {
         Self::Other,
     ];
 
-    /// Returns what the resource does while a picture waits for it.
+    /// Returns a text that describes the work of the resource while a picture waits for it.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

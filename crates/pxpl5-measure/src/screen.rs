@@ -5,18 +5,18 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Contents of a run's first surface over time, as far as arrivals were added and not discarded.
+/// Contents of a run's first surface over time. Only arrivals that were added and not discarded are known.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
-    /// Each swap: the period from which the other buffer is shown, and the number of earlier swaps.
+    /// Each swap: the period from which the other buffer is shown, and the number of swaps before this swap.
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals for one buffer with one division into regions, sorted by region and arrival.
+/// Arrivals of regions in one buffer, with one division of the screen into regions. Sorted by region and time.
 #[derive(Debug)]
 struct Cut {
-    /// Target of the first arrival. Its region and picture are not used.
+    /// Copy target of the first arrival. The region and the picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -41,7 +41,7 @@ impl Cut {
 }
 
 impl Screen {
-    /// Adds the arrivals since the last call, and replaces the swaps by those that the run still holds.
+    /// Adds the arrivals since the last call, and replaces the swaps by the swaps that the run still has in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
         arrived.for_each(|arrival| self.arrive(arrival));
@@ -61,7 +61,7 @@ impl Screen {
         }
     }
 
-    /// Discards arrivals that other arrivals had covered by `instant`.
+    /// Discards arrivals whose pixels had been overwritten by later arrivals at `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
             let there = region.partition_point(|arrived| arrived.0 <= instant);
@@ -69,7 +69,7 @@ impl Screen {
         }
     }
 
-    /// Returns the targets of all arrivals that are still held.
+    /// Returns the targets of all arrivals that have not been discarded.
     pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
         self.cuts.iter().flat_map(|cut| {
             let regions = (0..).map(RegionId).zip(&cut.regions);

@@ -1,4 +1,4 @@
-//! The picture that each pixel of a run shows, and the pose for which it was drawn.
+//! The picture that each pixel of a run shows, and the head pose for which this picture was drawn.
 
 pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
@@ -21,29 +21,31 @@ pub(crate) enum Seen {
     Incomplete,
     /// The pixel belongs to a complete picture that was shown before the window.
     Before,
-    /// The pixel belongs to a picture shown within the window, complete and in time.
+    /// The pixel belongs to a picture shown within the result window, complete and in time.
     Complete(Drawn),
 }
 
-/// The views of a run and the contents of its screen, updated while the run continues.
+/// The views of a run and the contents of its screen, updated during the run.
 #[derive(Debug)]
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures of start-up.
+    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during
+    /// start-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures added so far.
     pictures: usize,
-    /// The result window, outside which pictures are not evaluated.
+    /// The result window. Pictures outside the result window are not evaluated.
     ///
-    /// `None` for pipelines without due pictures. Their pictures are all evaluated, each until the next one covers it.
+    /// `None` for pipelines without due pictures. All their pictures are evaluated, each until the next picture covers
+    /// it.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
-    /// Memories and directions of an address recalculation display.
+    /// Display memories and latched directions of an address recalculation display.
     faces: Option<LatchedFaces>,
 }
 
-/// The moment for which a view was drawn, and the time up to which the host knew tracker reports.
+/// The moment for which a view was drawn, and the arrival time of the last tracker report that the host knew.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -51,7 +53,7 @@ struct Viewed {
 }
 
 impl Shown {
-    /// Creates the state for a run of which nothing was added yet.
+    /// Creates the state for a run from which no records were added yet.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
@@ -64,14 +66,14 @@ impl Shown {
         }
     }
 
-    /// Creates the state from all kept records of a run.
+    /// Creates the state from all records of a run that remain in memory.
     pub(crate) fn of_run(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let mut shown = Self::begin(run, head);
         shown.take(run, head);
         shown
     }
 
-    /// Adds the final pictures, arrivals and views of the run.
+    /// Adds the pictures, arrivals and views of the run that can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
@@ -90,7 +92,7 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.take(run));
     }
 
-    /// Discards everything that later periods cannot show.
+    /// Discards all data that later periods cannot show.
     ///
     /// Views that use later reports are kept, because their pictures may still arrive.
     pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
@@ -113,7 +115,7 @@ impl Shown {
 
     /// Returns the older views that are visible at `instant` or may become visible later.
     ///
-    /// For display memories, these are all views that are not yet covered.
+    /// For display memories, these views are all views that no later view covers.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {
             return run.notes.all().iter().map(|note| note.view).collect();
@@ -126,7 +128,7 @@ impl Shown {
         sources.flat_map(views_of).collect()
     }
 
-    /// Classifies the picture of a pixel that lights at `at`.
+    /// Classifies the picture that a pixel shows when the pixel is lit at `at`.
     pub(crate) fn seen(&self, run: &FinalResults<'_>, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         if self.faces.is_none()
             && let Some(target) = self.screen.shown(x, y, field, at)
@@ -140,7 +142,7 @@ impl Shown {
         self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)
     }
 
-    /// Replaces the poses of the views `of` by those without one cause of error. All other views show nothing
+    /// Replaces the poses of the views `of` by the poses without one cause of error. All other views show nothing
     /// afterwards.
     pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
@@ -154,7 +156,7 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.disable_cause(without));
     }
 
-    /// Returns the views that a pixel shows when it lights at `at`.
+    /// Returns the views that a pixel shows when it is lit at `at`.
     ///
     /// The result has one view, or two for an interpolated picture. It is empty before the first arrival.
     pub(crate) fn views_at(
@@ -175,7 +177,7 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// Returns the source of a pixel that lights at `at`, or `None` before the first arrival.
+    /// Returns the source of a pixel that is lit at `at`, or `None` before the first arrival.
     pub(crate) fn drawn(
         &self,
         run: &FinalResults<'_>,
@@ -209,7 +211,7 @@ fn viewed(sampled: &SampledPose) -> Viewed {
     Viewed { known: sampled.known, moment }
 }
 
-/// Returns the projection of the head-mounted display on the first surface of a display.
+/// Returns the projection of a head-mounted display onto the first surface of a display.
 pub(crate) fn view_of(display: &dyn Display, hmd: &HmdConfig) -> HmdView {
     let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, hmd.horizontal_fov_deg);
     display.surfaces().first().and_then(|surface| sized(surface).ok()).unwrap_or_else(HmdView::ntsc)

@@ -1,35 +1,37 @@
-//! How long a step of the head takes to light, for what each memory of a display with faces shows.
+//! Latency from a step (translation) of the head until the content of each display memory is lit.
 
 use address_recalculation::{AddressRecalculationPipeline, Scan};
 use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// Parts of the latency of a step of the head, in the order of time.
+/// Names of the parts of the latency of a step, in the order of time.
 const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
-/// A streaming observer of the latencies of a step of the head, one for each memory and period since the memory's first update.
+/// A streaming observer of the latencies of a step of the head.
+///
+/// It adds one latency for each memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
 pub(crate) struct StepSum {
     next: PeriodNumber,
     memories: Vec<OfMemory>,
 }
 
-/// Latencies in what one memory shows, milliseconds.
+/// Latencies of the content of one display memory, in milliseconds.
 #[derive(Debug, Default)]
 struct OfMemory {
-    /// The period from whose begin the newest update is shown, and the instant at which its latency begins.
+    /// The period that first shows the newest update, and the instant at which the update's latency begins.
     begin: Option<(PeriodNumber, Time)>,
     total: Samples,
     parts: [f64; PARTS.len()],
 }
 
-/// The latency of a step in what one memory showed.
+/// Latencies from a step (translation) of the head until the content of one display memory is lit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
-    /// Over all periods from the first update on, milliseconds; `None` before it.
+    /// Latency over all periods since the first update, in milliseconds. `None` before the first update.
     pub(crate) latency_ms: Option<Statistics>,
-    /// Means of its parts, milliseconds.
+    /// Means of the parts of the latency, in milliseconds.
     pub(crate) parts_ms: Vec<(&'static str, f64)>,
 }
 
@@ -53,17 +55,18 @@ impl StepSum {
         self.next = run.until;
     }
 
-    /// Returns the result of each memory, the one that is drawn most often first.
+    /// Returns the results of all memories, starting with the memory that is drawn most often.
     pub(crate) fn result(self) -> Vec<Steps> {
         self.memories.into_iter().map(OfMemory::result).collect()
     }
 }
 
 impl OfMemory {
-    /// Takes the latency of what the memory shows in the middle of a field.
+    /// Adds the latency of the memory's content at the middle of a field.
     fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
-        // The measurement is looked up once: a long run gives up the views of updates that it shows for many fields.
+        // The measurement is looked up once for each update, because a long run may discard the view of an update that
+        // is shown for many fields.
         let begin = match self.begin {
             Some((from, begin)) if from == shown.from => begin,
             _ => measured_at(run, shown).unwrap_or(due),
@@ -89,13 +92,15 @@ impl OfMemory {
     }
 }
 
-/// Returns the instant at which the pose behind a memory's picture was measured; `None` without a tracked head.
+/// Returns the instant at which the pose for a memory's picture was measured. `None` without a tracked head.
 fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
     let sampled = run.head?.sampled();
     sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at
 }
 
-/// Returns the milliseconds between two instants: below zero where a view rests on a report that came after its memory was due.
+/// Returns the time between two instants in milliseconds.
+///
+/// The result is negative if a view uses a report that arrived after its memory was due.
 fn between_ms(from: Time, to: Time) -> f64 {
     (to.0 as f64 - from.0 as f64) * 1e-9
 }

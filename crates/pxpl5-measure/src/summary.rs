@@ -2,7 +2,7 @@
 
 use pxpl5_run::{Outcome, Summary};
 
-/// Returns the summary of an outcome over the pictures in the window.
+/// Returns the summary of an outcome over the pictures in the result window.
 #[must_use]
 pub fn summary(outcome: &Outcome) -> Summary {
     outcome.summary()

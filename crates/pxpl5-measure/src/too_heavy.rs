@@ -4,7 +4,8 @@ use pxpl5_run::{DuePictures, Experiment};
 use serde::Serialize;
 use std::fmt;
 
-/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]), with the number of triangles that would fit.
+/// Warning that the load was too heavy ([`DuePictures::is_too_heavy`]), with the number of triangles that the pipeline
+/// can show in time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TooHeavy {
     /// Number of pictures that were due.
@@ -13,9 +14,9 @@ pub struct TooHeavy {
     pub not_shown: u64,
     /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// Number of the scene's first primitives that the pipeline would show in time, by its closed form.
+    /// Number of the scene's first primitives that the pipeline would show in time, computed by its analytic model.
     ///
-    /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
+    /// `None` if the pipeline has no analytic model, or if the model predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
     /// Advice to the user: a number of triangles to try, or a command that finds one.
     pub advice: String,
@@ -44,7 +45,7 @@ fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
     }
 }
 
-/// Returns the plural ending of a noun that follows a number.
+/// Returns `s` for counts that need a plural noun, and an empty text for 1.
 const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }

@@ -1,4 +1,4 @@
-//! Follows a picture backwards through what it waited for.
+//! Follows a picture backwards in time through the work that it waited for.
 
 use crate::resource::Resource;
 use pxpl5_gp::{Stage, StageEdge};
@@ -9,14 +9,14 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PictureNumber, SurfaceId};
 use std::collections::{BTreeMap, HashMap};
 
-/// A piece of a latency.
+/// A part of a latency, during which the picture waited for one resource.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
     pub(crate) resource: Resource,
     pub(crate) board: Option<Board>,
     pub(crate) from: Time,
     pub(crate) to: Time,
-    /// The work that was waited for, in words.
+    /// Text that describes the work that the picture waited for.
     pub(crate) what: String,
 }
 
@@ -26,7 +26,7 @@ impl Step {
     }
 }
 
-/// A stage on one board.
+/// One stage of a picture's work on one board.
 #[derive(Clone, Copy, Debug)]
 struct StageWork {
     node: NodeId,
@@ -37,48 +37,48 @@ struct StageWork {
     end: Time,
 }
 
-/// Times that differ by less than this belong to one instant: signals and hops of the ring take a few cycles each.
+/// Times that differ by less than this span count as one instant. Signals and hops of the ring take a few cycles each.
 const NEAR: Span = Span::from_us(20);
 
-/// A port that was free for less than this part of a region's transfer counts as busy.
+/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer.
 const SLACK: u64 = 4;
 
-/// Steps of one picture at most.
+/// Largest number of steps for one picture.
 const MOST_STEPS: usize = 20_000;
 
-/// The work of a run in the order of its ends, as far as the latency of some pictures can have waited for it.
+/// The work of a run, sorted by end time, from the earliest work that the followed pictures can have waited for.
 pub(crate) struct Trail<'a> {
     record: &'a Record,
     message: Span,
-    /// How long a region takes into the backing store.
+    /// Time to copy a region into the renderer's backing store.
     store: Span,
     arrivals: Vec<&'a Arrival>,
     drawn: Vec<(usize, DrawnRegion)>,
     of_target: HashMap<CopyTarget, Vec<usize>>,
     of_renderer: BTreeMap<usize, Vec<usize>>,
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
-    /// EDIT, TRANSFORM and SEND on each board.
+    /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// The first begin and the last end of RENDER.
+    /// The first begin and the last end of RENDER for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,
 }
 
-/// Position of the way back.
+/// Current position while a picture is followed backwards.
 #[derive(Clone, Copy, Debug)]
 enum At {
-    /// At the begin of a region's way into a display.
+    /// At the begin of a region's transfer to a display.
     Arrival(usize),
-    /// At the end of a region's commands.
+    /// At the end of a region's commands on a renderer.
     Drawn(usize),
     /// At the end of a stage on a board, or within it.
     Stage(usize),
-    /// At the first end of the latency.
+    /// At the start of the latency.
     Begin,
 }
 
-/// The way back so far: steps without a gap between them.
+/// The steps found so far on the way backwards, without a gap between steps.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,
@@ -86,7 +86,7 @@ struct Way {
 }
 
 impl Way {
-    /// Charges the time from `from` to where the way stands to a resource.
+    /// Assigns the time from `from` to the current position (`cursor`) to a resource.
     fn charge(&mut self, resource: Resource, board: Option<Board>, from: Time, what: impl FnOnce() -> String) {
         let from = from.max(self.floor);
         if from >= self.cursor {
@@ -106,7 +106,7 @@ impl Way {
 }
 
 impl<'a> Trail<'a> {
-    /// Collects the records from an instant on.
+    /// Collects the records of a run from the instant `earliest` on.
     pub(crate) fn of(record: &'a Record, earliest: Time) -> Self {
         let observation = record.observation();
         let mut arrivals: Vec<&Arrival> = observation.arrivals.iter().filter(|a| a.last_part_at >= earliest).collect();
@@ -140,7 +140,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Joins the begins and ends of stages on each board.
+    /// Joins the begin and the end of each stage on each board.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
@@ -168,7 +168,7 @@ impl<'a> Trail<'a> {
                 _ => {}
             }
         }
-        // A stage that has not ended is waited for all the same.
+        // A picture can also wait for a stage that has not ended.
         let still = open.into_iter().map(|((node, picture, surface, stage), begin)| {
             let end = Time(u64::MAX);
             StageWork { node, picture, surface, stage, begin, end }
@@ -210,12 +210,12 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// How many regions had arrived by an instant.
+    /// Returns the number of regions that had arrived by an instant.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
 
-    /// The region's way into the display, and what let it begin.
+    /// Assigns the time of a region's transfer to a display. Returns the work whose end let the transfer begin.
     fn before_arrival(&self, way: &mut Way, place: usize) -> At {
         let arrival = self.arrivals[place];
         let begin = arrival.begins_at(self.message);
@@ -224,13 +224,13 @@ impl<'a> Trail<'a> {
         let by_port = self
             .arrival_before(place, begin + NEAR, |before| before.target.frame_buffer == arrival.target.frame_buffer);
         let Some(place_drawn) = drawn else { return self.to_arrival(way, by_port) };
-        // A port that was free for a moment only is what limits: a region that had come sooner would have waited for it.
+        // A port that was free only for a moment is the limit: a region that had come earlier would have waited for it.
         let slack = Span(arrival.last_part_at.since(begin).0 / SLACK);
         if by_port.is_some_and(|before| self.arrivals[before].last_part_at + slack >= begin) {
             return self.to_arrival(way, by_port);
         }
         let (renderer, region) = self.drawn[place_drawn];
-        // It has waited for its port, or for the transfer before it, if its copy command did not just start.
+        // If the copy command started long before, the region has waited for its port, or for the previous transfer.
         if begin > region.copy_at + self.store * 2 + NEAR {
             let by_renderer = self.arrival_before(place, begin + NEAR, |before| {
                 let of = self.drawn_for(&before.target, begin);
@@ -251,7 +251,7 @@ impl<'a> Trail<'a> {
         self.before_late_copy(way, place, place_drawn)
     }
 
-    /// A copy command came late: a frame buffer was not free before, or another eye was copied.
+    /// Finds the reason for a late copy command: no frame buffer was free, or another eye was copied first.
     fn before_late_copy(&self, way: &mut Way, place: usize, place_drawn: usize) -> At {
         let (_, region) = self.drawn[place_drawn];
         let arrived = self.arrival_before(place, region.copy_at, |_| true);
@@ -270,14 +270,14 @@ impl<'a> Trail<'a> {
         self.to_arrival(way, arrived)
     }
 
-    /// Goes on at an earlier arrival; what lies between are messages.
+    /// Continues at an earlier arrival. The time between the two positions is assigned to messages.
     fn to_arrival(&self, way: &mut Way, place: Option<usize>) -> At {
         let Some(place) = place else { return At::Begin };
         way.messages(self.arrivals[place].last_part_at);
         At::Arrival(place)
     }
 
-    /// Charges the way of a region's pixels: what is longer than the pixels take is a wait for channels.
+    /// Assigns the time of a region's transfer. Time beyond the minimum for the pixels is a wait for ring channels.
     fn charge_copy(&self, way: &mut Way, arrival: &Arrival, drawn: Option<usize>) {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
@@ -300,20 +300,23 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// The last drawing for a target whose copy command had started by an instant.
+    /// Returns the index of the last drawn region for a target, among the regions whose copy command had started by
+    /// `by`.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
 
-    /// The last arrival before another one that had ended by an instant.
+    /// Returns the index of the last wanted arrival that precedes arrival `place` and had ended by the instant `by`.
     fn arrival_before(&self, place: usize, by: Time, is_wanted: impl Fn(&Arrival) -> bool) -> Option<usize> {
         let end = self.arrivals_by(by).min(place);
-        // Those far back are no cause.
+        // Arrivals far back in time are not the cause.
         let first = end.saturating_sub(512);
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
 
-    /// The commands of a region, and what let them begin: the region before on the same renderer, or the begin of RENDER.
+    /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
+    ///
+    /// This work is the previous region on the same renderer, or the begin of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let board = Some(Board::Renderer(renderer));
@@ -327,7 +330,8 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Renderers, board, Time(region.finished_at.0 - executed.0), || {
             format!("RENDER of region {number} on renderer {renderer}")
         });
-        // In the rest the renderer waited for commands: of a graphics processor that transforms, else of tokens and messages.
+        // In the remaining time, the renderer waited for commands. Either a graphics processor was in TRANSFORM, or
+        // tokens and messages were on their way.
         let transform = self.transform_beside(picture, surface, begin, way.cursor);
         let transformed = Time(way.cursor.0.saturating_sub(transform.0)).max(begin);
         way.charge(Resource::Transform, None, transformed, || format!("TRANSFORM for region {number}"));
@@ -340,7 +344,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// The controller had done with the region before: its commands, or a copy that found no room.
+    /// Continues at the work that kept the renderer's controller busy before: the previous region's commands, or a copy
+    /// that waited for room.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));
@@ -364,7 +369,7 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// The time of an interval in which some graphics processor was in TRANSFORM for a picture.
+    /// Returns the part of an interval in which at least one graphics processor was in TRANSFORM for a picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);
@@ -381,7 +386,7 @@ impl<'a> Trail<'a> {
         self.stages.iter().filter(is_of).collect()
     }
 
-    /// RENDER of a surface began when the last graphics processor had ended its TRANSFORM.
+    /// Continues at the last TRANSFORM of a surface. RENDER began when the last graphics processor had ended TRANSFORM.
     fn to_transform(&self, way: &mut Way, picture: PictureNumber, surface: Option<SurfaceId>) -> At {
         let is_of = |work: &StageWork| {
             work.stage == Stage::Transform
@@ -397,7 +402,7 @@ impl<'a> Trail<'a> {
         At::Stage(found)
     }
 
-    /// A stage, and what let it begin.
+    /// Assigns the time of a stage. Returns the work whose end let the stage begin.
     fn before_stage(&self, way: &mut Way, place: usize) -> At {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);
@@ -408,7 +413,7 @@ impl<'a> Trail<'a> {
         if let Some(own) = own.filter(|own| self.stages[*own].end + NEAR >= by) {
             return At::Stage(own);
         }
-        // The latest of all that the rules of a pipeline can wait for.
+        // Find the latest end among all the work that a pipeline's rules can wait for.
         let stage = self.stages[..place].iter().rposition(|before| before.end <= by);
         let arrival = self.arrivals_by(by).checked_sub(1);
         let render = self.render_ends.partition_point(|(end, ..)| *end <= by).checked_sub(1);
@@ -427,7 +432,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// The region whose commands ended last in a RENDER.
+    /// Returns the region whose commands ended last in a RENDER stage.
     fn last_drawn(&self, (end, picture, surface): (Time, PictureNumber, Option<SurfaceId>)) -> At {
         let is_of = |region: &DrawnRegion| {
             let own = self.surface_of_port.get(&region.target.frame_buffer).copied();

@@ -1,24 +1,24 @@
-//! Latency from a rotation of the head to light, over all fields of the window.
+//! Latency from a rotation of the head until the middle pixel is lit, over all fields of the result window.
 
 use pxpl5_run::{FinalResults, RotationLatency, Samples, Statistics};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// One part of the latency of rotation.
+/// One part of the rotation latency.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RotationPart {
     /// Name of the part, as in [`RotationLatency`](pxpl5_run::RotationLatency).
     pub name: &'static str,
-    /// Statistics over the middle pixel of all fields of the window, in milliseconds.
+    /// Statistics over the middle pixel of all fields of the result window, in milliseconds.
     #[serde(flatten)]
     pub statistics: Statistics,
 }
 
-/// Collects the rotation latency of the middle pixel of every field of the window, in milliseconds.
+/// Collects the rotation latency of the middle pixel of every field of the result window, in milliseconds.
 #[derive(Debug, Default)]
 pub(crate) struct RotationLatencySum {
     next: PeriodNumber,
-    /// First period of the result window, as far as known.
+    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
     total: Samples,
     parts: Vec<Samples>,

@@ -1,4 +1,4 @@
-//! Sources of pixels on an address recalculation display: positions of the memories, and latched directions.
+//! Sources of pixels on an address recalculation display: head poses of the memories, and latched directions.
 
 use crate::drawn::{FacesSeen, Moment};
 use glam::DQuat;
@@ -19,7 +19,8 @@ pub(crate) struct LatchedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Predicted orientations, by the report they use and the instant they are predicted for.
+/// Predicted orientations of the head. The key consists of the arrival time of the tracker report and the instant of
+/// the prediction.
 struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
@@ -42,7 +43,7 @@ impl LatchedFaces {
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
-    /// Replaces the history by the display updates that the run still holds.
+    /// Replaces the history by the display updates that the run still has in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
     }
@@ -63,12 +64,12 @@ impl LatchedFaces {
         self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
 
-    /// Returns the views that the memories show in a field.
+    /// Returns the views that the display memories show in a field.
     pub(crate) fn views_at(&self, field: PeriodNumber) -> Vec<ViewNumber> {
         self.history.at(field).map(|shown| shown.note.view).collect()
     }
 
-    /// Returns the memories and the direction of a pixel, or `None` before the first update.
+    /// Returns the display memories and the direction that a pixel was read from, or `None` before the first update.
     pub(crate) fn drawn(
         &self,
         x: u32,

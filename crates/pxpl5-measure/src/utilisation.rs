@@ -1,42 +1,43 @@
-//! How busy each board was, over a whole run.
+//! Share of time for which each board was busy, over a whole run.
 
 use pxpl5_machine::Record;
 use pxpl5_sim::{Span, Time};
 use serde::Serialize;
 use std::fmt;
 
-/// Shares of the time of a run in which boards were busy, 0 to 1, from switching on to the end of the run.
+/// Share of time for which boards were busy, 0 to 1, from the start of the machine to the end of the run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Utilisation {
-    /// The time that the shares are of, milliseconds of simulated time.
+    /// Duration of the run, to which the shares refer, in milliseconds of simulated time.
     pub of_ms: f64,
-    /// CPU of the host.
+    /// Share of time for which the host's CPU was busy.
     pub host: f64,
-    /// The graphics processors, the master included.
+    /// Shares of the graphics processors, including the master.
     pub gps: GpUtilisation,
-    /// The renderers.
+    /// Shares of the renderers' controllers.
     pub renderers: RendererUtilisation,
-    /// The ring.
+    /// Share of the ring's channels, and the ring's data rate.
     pub ring: RingUtilisation,
-    /// The ports of the displays, in the order of their boards.
+    /// Shares of the ring ports of displays, in the order of their boards.
     pub ports: PortUtilisation,
 }
 
-/// Shares of boards of one kind.
+/// Shares of time for which the boards of one kind were busy, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shares {
     /// Mean over all boards.
     pub mean: f64,
     /// Share of the busiest board.
     pub max: f64,
-    /// Number of the busiest board, from 0.
+    /// Index of the busiest board, counted from 0.
     pub busiest: usize,
-    /// Boards that were busy for less than 1 % of the time.
+    /// Number of boards that were busy for less than 1 % of the time.
     pub idle: usize,
 }
 
 impl Shares {
-    /// Returns the shares of a time in some spans, one for each board; `None` without boards or time.
+    /// Returns the shares of `time` that the spans take, one span for each board. Returns `None` without boards or
+    /// time.
     #[must_use]
     pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
         let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();
@@ -47,64 +48,64 @@ impl Shares {
     }
 }
 
-/// A board that is busy for a smaller share of the time is idle.
+/// Share of the time below which a board counts as idle.
 const IDLE: f64 = 0.01;
 
-/// Shares of the CPUs of the graphics processors.
+/// Shares of CPU time of the graphics processors, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GpUtilisation {
-    /// All that their CPUs did.
+    /// Share of time for all work of the CPUs.
     pub busy: Shares,
-    /// Mean share of work such as EDIT and TRANSFORM.
+    /// Mean share of time for work such as EDIT and TRANSFORM.
     pub work: f64,
-    /// Mean share of the software that receives and sends messages.
+    /// Mean share of time for the software that receives and sends messages.
     pub messages: f64,
-    /// Mean share of handing over bins for tokens.
+    /// Mean share of time for handing over bins in return for tokens.
     pub tokens: f64,
 }
 
-/// Shares of the renderers' controllers.
+/// Shares of time of the renderers' controllers, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RendererUtilisation {
-    /// Execution of commands.
+    /// Share of time in which the controller executed commands.
     pub executing: Shares,
-    /// Mean share in which a copy command held the controller.
+    /// Mean share of time in which a copy command held the controller.
     pub copying: f64,
-    /// Mean share in which the controller waited for commands.
+    /// Mean share of time in which the controller waited for commands.
     pub waiting: f64,
 }
 
-/// Shares and words of the ring.
+/// Share of time in which channels of the ring were occupied, and data rates in words per second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RingUtilisation {
-    /// Occupied channels, overhead and stalls included.
+    /// Share of time in which a channel was occupied, including overhead and stalls.
     pub channels: Shares,
-    /// Words of messages a second, without overhead.
+    /// Number of message words per second, without overhead.
     pub words_per_second: f64,
-    /// Words a second that all channels could carry.
+    /// Number of words per second that all channels could carry.
     pub capacity: f64,
 }
 
-/// How busy the ports of displays were.
+/// Shares of time for which the ring ports of displays were busy, 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortUtilisation {
-    /// All ports.
+    /// Statistics over all ports.
     pub busy: Shares,
-    /// Each port with what is behind it.
+    /// Share of each port.
     pub each: Vec<PortShare>,
 }
 
-/// The share of one port.
+/// Share of time for which one port was busy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortShare {
-    /// Title of the surface behind the port, or the display's name with the port's number.
+    /// Title of the surface behind the port, or the display's name with the port's index.
     pub port: String,
-    /// Share of the time in which messages came in.
+    /// Share of time in which messages arrived, 0 to 1.
     pub busy: f64,
 }
 
 impl Utilisation {
-    /// Returns the shares of a run that is over; `None` of a machine that has not run.
+    /// Returns the shares of a finished run. Returns `None` for a machine that has not run.
     #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
         let time = record.elapsed();
@@ -155,7 +156,7 @@ impl PortUtilisation {
 }
 
 impl fmt::Display for Utilisation {
-    /// Prints a line for each kind of board.
+    /// Prints one line for each kind of board.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { gps, renderers, ring, ports, .. } = self;
         writeln!(
@@ -186,7 +187,7 @@ impl fmt::Display for Utilisation {
     }
 }
 
-/// Shares as text: mean, the busiest board, and how many are idle.
+/// Formats shares as text: the mean, the busiest board, and the number of idle boards.
 fn told(shares: &Shares, board: &str) -> String {
     let idle = if shares.idle > 0 { format!(", {} idle", shares.idle) } else { String::new() };
     format!("mean {}, {board} {} {}{idle}", percent(shares.mean), shares.busiest, percent(shares.max))
@@ -222,7 +223,7 @@ mod tests {
         assert_eq!(Shares::of([Span(0)], Time::ZERO), None);
     }
 
-    /// A message that is counted at its end may reach beyond the end of a run by a few microseconds.
+    /// A message counts at its end, so its time may extend beyond the end of a run by a few microseconds.
     #[test]
     fn no_share_is_above_one() {
         assert_eq!(share(Span(101), Time(100)), 1.0);

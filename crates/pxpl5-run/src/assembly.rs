@@ -1,4 +1,4 @@
-//! Builds the machine of an experiment with its programs.
+//! Builds the machine of an experiment and loads its programs.
 
 use crate::assembled::Assembled;
 use crate::cut::moves;
@@ -98,18 +98,18 @@ impl Experiment {
     }
 }
 
-/// Returns the function that gives the start of a frame. A host that is ready begins the frame after its application's
-/// computing time.
+/// Returns the function that gives the start time of a frame. A host that is ready begins the frame after the computing
+/// time of its application.
 fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
-/// Checks that display and pipeline match. A display that takes faces needs a pipeline that draws faces, and the
-/// reverse.
+/// Checks that display and pipeline match. A display that accepts cube faces needs a pipeline that draws cube faces,
+/// and vice versa.
 ///
 /// # Errors
 ///
-/// [`ConfigError`] states what was expected of the pipeline and what was found.
+/// [`ConfigError`] states the expected kind of pipeline and the pipeline found.
 pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), ConfigError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
     let name = display.name();
@@ -125,7 +125,7 @@ pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<()
     }
 }
 
-/// Checks that a recorded motion has poses for the whole run.
+/// Checks that a recorded head motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
     if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
         return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });

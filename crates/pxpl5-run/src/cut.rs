@@ -1,4 +1,4 @@
-//! Segmentation at load time: cuts a scene into pieces that each lie in one cell of the world.
+//! Segmentation at load time: cuts a scene into segments that each lie in one cell of the world.
 
 use glam::{DVec3, Vec3};
 use priority_rendering::{Cell, CutVertex, PriorityError, Segmentation};
@@ -7,20 +7,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A scene with the square cells in which each structure lies.
+/// A scene, and the square cells of the world in which each structure lies.
 #[derive(Clone, Debug)]
 pub struct SegmentedScene {
-    /// Scene to load in place of the original one.
+    /// Scene that is loaded instead of the original scene.
     pub scene: Arc<Scene>,
     /// Cells of each structure. A segment has one cell. A structure that was not cut has all cells that it touches. A
-    /// structure that moves has none.
+    /// moving structure has no cell.
     pub cells: Arc<[Vec<Cell>]>,
 }
 
 impl SegmentedScene {
-    /// Cuts structures at the borders of square cells with this side, in metres. A cut through an edge creates one
-    /// vertex that all adjacent pieces share, so the pieces meet bit for bit. Its colour and normal are interpolated. A
-    /// sphere is not cut and belongs to the cell of its centre. A structure that moves stays whole.
+    /// Cuts structures at the borders of square cells with a side of `side_m` metres.
+    ///
+    /// A cut through an edge creates one vertex that all adjacent segments share, so the segments meet bit for bit. The
+    /// colour and normal of this vertex are interpolated. A sphere is not cut and belongs to the cell of its centre. A
+    /// moving structure stays whole.
     ///
     /// # Errors
     ///
@@ -37,18 +39,18 @@ impl SegmentedScene {
         pieces.finish()
     }
 
-    /// Keeps the scene uncut and finds the cells that each structure touches.
+    /// Leaves the scene uncut and finds the cells that each structure touches.
     ///
     /// # Errors
     ///
-    /// As [`SegmentedScene::segmented`].
+    /// Like [`SegmentedScene::segmented`].
     pub fn whole(scene: &Arc<Scene>, side_m: f64) -> Result<Self, PriorityError> {
         let cells = scene.structures().iter().map(|structure| cells(scene, structure, side_m));
         Ok(Self { scene: Arc::clone(scene), cells: cells.collect::<Result<Vec<_>, _>>()?.into() })
     }
 }
 
-/// Returns true if a structure moves by itself or with the head, and so has no fixed place in the world.
+/// Returns true if a structure moves by itself or with the head. Such a structure has no fixed position in the world.
 pub(crate) const fn moves(structure: &Structure) -> bool {
     structure.hinge.is_some() || matches!(structure.frame, Frame::Head)
 }
@@ -67,7 +69,7 @@ fn cell_of(sphere: &Sphere, side_m: f64) -> Cell {
     Cell::of(f64::from(sphere.centre.x), f64::from(sphere.centre.z), side_m)
 }
 
-/// Cuts the triangles of a structure. Vertices are counted from the structure's first one.
+/// Cuts the triangles of a structure. Vertex indices are relative to the structure's first vertex.
 fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation, PriorityError> {
     let own = &scene.vertices()[structure.vertices.clone()];
     let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
@@ -77,7 +79,7 @@ fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation
     Segmentation::new(&places, &triangles, side_m)
 }
 
-/// A scene under construction, made of segments.
+/// A scene of segments, under construction.
 struct Pieces {
     parts: SceneParts,
     cells: Vec<Vec<Cell>>,
@@ -128,7 +130,7 @@ impl Pieces {
         Ok(())
     }
 
-    /// Adds a structure with the given primitives. All other properties are those of `like`.
+    /// Adds a structure with the given primitives. All other properties are copied from the structure `like`.
     fn add(&mut self, like: &Structure, vertices: &[Vertex], triangles: &[[u32; 3]], spheres: &[Sphere]) {
         let first = self.parts.vertices.len() as u32;
         let structure = Structure {
@@ -146,7 +148,7 @@ impl Pieces {
     }
 }
 
-/// Appends elements to a list and returns their indices.
+/// Appends elements to a list and returns their range of indices.
 fn appended<T>(all: &mut Vec<T>, more: impl Iterator<Item = T>) -> Range<usize> {
     let first = all.len();
     all.extend(more);
@@ -165,7 +167,7 @@ fn between(vertices: &[Vertex], place: DVec3, made: &CutVertex) -> Vertex {
     Vertex { position: place.as_vec3(), normal, colour: [0, 1, 2].map(part) }
 }
 
-/// Returns the vertices that some triangles use, in order, and the triangles with renumbered vertices.
+/// Returns the vertices that any of the triangles uses, in order, and the triangles with renumbered vertices.
 fn own_vertices(all: &[Vertex], triangles: &[[u32; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>) {
     let named: BTreeSet<u32> = triangles.iter().flatten().copied().collect();
     let numbers: BTreeMap<u32, u32> = named.iter().copied().zip(0..).collect();

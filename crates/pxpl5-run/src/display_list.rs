@@ -11,8 +11,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 
-/// Returns the scene's primitives as a display list. Fails if the scene is empty, or if more structures move than the
-/// host can send.
+/// Returns the scene's primitives as a display list. Returns an error if the scene is empty, or if it has more moving
+/// structures than the host can send.
 pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
     // Check that the scene has primitives and that its edits fit into a frame message.
     if scene.triangles().is_empty() && scene.spheres().is_empty() {
@@ -60,7 +60,7 @@ pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<Displa
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
 }
 
-/// Returns the view of a scene at a time from a pose, through the papers' head-mounted display.
+/// Returns the view of a scene at a time, seen from a pose through the papers' head-mounted display.
 pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, time: Time, pose: &Pose) -> FrameView {
     let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
     let eye = |v: &pxpl5_scene::View| EyeView {
@@ -76,11 +76,11 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
     }
 }
 
-/// Returns a head-mounted display, adapted to the number of pixels of a surface.
+/// Returns a head-mounted display with the resolution of a surface.
 ///
 /// # Panics
 ///
-/// Never: every display has surfaces of 1 to 65,536 pixels each way.
+/// Never, because every display has surfaces with a width and height of 1 to 65,536 pixels.
 pub(crate) fn hmd_before(surface: Option<&Surface>, hmd: HmdConfig) -> Hmd {
     let config = surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd });
     Hmd::new(config).expect("a surface has pixels")
@@ -92,7 +92,7 @@ pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     Arc::new(move |known, _| motion.pose(known.0))
 }
 
-/// Returns two functions that give views of the scene's own head motion. The first gives the view at the sample time,
+/// Returns two functions that give views of the scene's own head motion. The first returns the view at the sample time,
 /// the second the view at the time when it is seen.
 pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().with_seed(seed);

@@ -1,4 +1,4 @@
-//! The displays: those of the papers, two of today and one of your own numbers. One line for each.
+//! The displays: the displays of the papers, two current displays, and one with parameters that the user sets.
 
 use crate::registry::DisplayEntry;
 use address_recalculation::ArpConfig;

@@ -15,17 +15,17 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Smallest number of pictures in a window that defines a rate.
+/// Smallest number of pictures in a window from which an update rate can be computed.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Counts of the pictures that were due in a window of a run. Each picture has one of four results.
+/// Numbers of pictures that were due in a window of a run, by result. Each picture has one of four results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First period of the window.
     pub first_period: PeriodNumber,
-    /// Last period of the window. This period is part of the window.
+    /// Last period of the window, inclusive.
     pub last_period: PeriodNumber,
-    /// Number of periods from one picture that is due to the next.
+    /// Number of periods from one due picture to the next.
     pub periods_a_picture: u64,
     /// Number of pictures due: the periods of the window divided by `periods_a_picture`.
     pub due: u64,
@@ -37,18 +37,21 @@ pub struct DuePictures {
     pub incomplete: u64,
     /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Number of periods of the window in which a picture was shown in time, due or not. The number exceeds `shown` if
-    /// pictures come more often than they are due.
+    /// Number of periods of the window in which any picture was shown in time, due or not.
+    ///
+    /// The number exceeds `shown` if the pipeline shows more pictures than are due.
     pub pictures: u64,
 }
 
 impl DuePictures {
-    /// Counts the pictures of a run by result. `pictures` gives the period in which each begun picture should be seen,
-    /// and its result, in order of periods. `periods_a_picture` is the number of periods between due pictures.
-    /// `reached` is the first period that was not over when the run ended.
+    /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
+    ///
+    /// `pictures` gives each begun picture's result and the period in which it should be seen, in order of periods.
+    /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
+    /// that was not over when the run ended.
     ///
     /// A picture also counts as shown if it comes before its due period, but after the due period of the picture
-    /// before. Returns `None` if no complete picture was due.
+    /// before.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
@@ -87,15 +90,17 @@ impl DuePictures {
         self.not_shown() as f64 / self.due as f64
     }
 
-    /// Returns true if the load is too heavy for the pipeline. In a pipeline with deadlines, some pictures were late or
-    /// incomplete. In a pipeline without deadlines, fewer than half of the due pictures were shown.
+    /// Returns true if the load is too heavy for the pipeline.
+    ///
+    /// In a pipeline with deadlines, some pictures were late or incomplete. In a pipeline without deadlines, fewer than
+    /// half of the due pictures were shown.
     #[must_use]
     pub const fn is_too_heavy(&self) -> bool {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due
     }
 
-    /// Returns the number of pictures shown a second, for a display period of `period_ms` milliseconds. Returns `None`
-    /// if fewer than two pictures were shown, because a single picture has no rate.
+    /// Returns the number of pictures shown per second, for a display period of `period_ms` milliseconds. Returns
+    /// `None` if fewer than two pictures were shown, because a single picture has no rate.
     #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;

@@ -6,22 +6,22 @@ use pxpl5_machine::{ConfigError, RunError};
 use pxpl5_sim::Time;
 use thiserror::Error;
 
-/// Error of an experiment.
+/// An error of an experiment.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The machine or its numbers are impossible, or the pipeline cannot run on the machine.
+    /// The machine or one of its parameters is invalid, or the pipeline cannot run on the machine.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The number of fields is out of range.
     #[error("fields must be {} to {}, found {found}", expected.0, expected.1)]
     Fields {
-        /// Smallest and largest number of fields.
+        /// Smallest and largest valid number of fields.
         expected: (u64, u64),
         /// Number of fields that was requested.
         found: u64,
     },
-    /// Only pictures of the warm-up were shown. The observations of the run are kept.
+    /// Only pictures of start-up were shown. The observations of the run are kept.
     #[error(
         "only {} shown in {} and the first {WARM_UP_PICTURES} are discarded; {}",
         were(*pictures as u64, "picture"),
@@ -31,16 +31,17 @@ pub enum ExperimentError {
     TooShort {
         /// Number of simulated fields.
         fields: u64,
-        /// Number of pictures that were shown. The first ones are not evaluated.
+        /// Number of pictures that were shown. All of them belong to start-up and are not evaluated.
         pictures: usize,
-        /// Approximate number of fields until a picture after the warm-up is shown, by the pipeline's closed form
-        /// ([`crate::Experiment::with_estimates`]). Without a closed form, the number is extrapolated from the run.
-        /// `None` if no picture was shown.
+        /// Approximate number of fields until a picture after start-up is shown. `None` if no picture was shown.
+        ///
+        /// The number comes from the pipeline's analytic model ([`crate::Experiment::with_estimates`]). Without such a
+        /// model, the number is extrapolated from the run.
         needed: Option<u64>,
         /// Outcome of the run, with all observations.
         partial: Box<Outcome>,
     },
-    /// The recording of the head's motion ends before the run.
+    /// The recording of the head's motion ends before the end of the run.
     #[error(
         "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or say what comes after its end \
          (head.end = \"hold\" or \"loop\")",
@@ -48,9 +49,9 @@ pub enum ExperimentError {
         seconds(*run)
     )]
     Recording {
-        /// End of the recording.
+        /// Time at which the recording ends.
         recording: Time,
-        /// End of the run.
+        /// Time at which the run ends.
         run: Time,
     },
     /// The recording of the head's motion has a gap within the time of the run.
@@ -62,24 +63,24 @@ pub enum ExperimentError {
         seconds(*run)
     )]
     RecordingGap {
-        /// Last pose before the gap.
+        /// Time of the last pose before the gap.
         from: Time,
-        /// First pose after the gap.
+        /// Time of the first pose after the gap.
         to: Time,
-        /// End of the run.
+        /// Time at which the run ends.
         run: Time,
     },
     /// The analytic level has no events, so no run at this level is possible.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
-    /// The scene has nothing to draw, or too many moving structures.
+    /// The scene has no primitives, or too many moving structures.
     #[error("{0}")]
     Scene(String),
-    /// The observer of the run ended it ([`crate::Experiment::run_stopping`]), or the host did
+    /// The function that observes the run ended it ([`crate::Experiment::run_stopping`]), or the host ended it
     /// ([`crate::Host::is_stopped`]).
     #[error("{0}")]
     Stopped(String),
-    /// The machine failed. The observations until then are kept.
+    /// The machine failed. All observations before the failure are kept.
     #[error("{error} ({} had been shown)", count_of(partial.tally().pictures, "picture"))]
     Run {
         /// Error of the machine.
@@ -93,7 +94,7 @@ fn seconds(at: Time) -> f64 {
     at.since(Time::ZERO).as_ms() * 1e-3
 }
 
-/// Returns a count with the singular or plural of a noun.
+/// Returns a count with the singular or plural form of a noun.
 fn count_of(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }

@@ -1,4 +1,4 @@
-//! Estimates of the head's pose as the host knows it, from the reports of a run or with one cause of error removed.
+//! Estimates of the head's pose from the reports that the host knows. One cause of error can be removed.
 
 use crate::head_views::{Follower, HeadViews};
 use crate::report_schedule::Coming;
@@ -12,28 +12,29 @@ use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// Cause of misregistration, which is an offset between displayed and ideal positions. Each cause can be removed from
-/// the reports and poses of a run that has ended. The machine's times stay unchanged.
+/// A cause of misregistration, the offset between displayed and correct positions.
+///
+/// Each cause can be removed from the reports and poses of a run that has ended. The machine's times stay unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Age of tracker reports when they arrive, and of pictures when they are shown. With this cause removed, the host
-    /// knows all measurements up to the instant that a picture is drawn for.
+    /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host knows
+    /// all measurements up to the instant for which a picture is drawn.
     Latency,
-    /// Duration of the scan: a picture is drawn for one instant and lights over a time span. With this cause removed,
-    /// the whole picture is evaluated at that instant.
+    /// Duration of the scan: a picture is drawn for one instant but is lit over a time span. Without this cause, the
+    /// whole picture is evaluated at the instant for which it was drawn.
     ScanOut,
-    /// Noise and bias of the tracker. With this cause removed, reports contain the true pose.
+    /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
-    /// Error of the predictor. With this cause removed, the true motion extrapolates the newest report.
+    /// Error of the predictor. Without this cause, the newest report is extrapolated by the true motion.
     Prediction,
-    /// Intervals at which the tracker measures and the host polls. With this cause removed, a measurement arrives at
-    /// the very instant at which it is needed.
+    /// Intervals at which the tracker measures and the host polls. Without this cause, a measurement arrives at the
+    /// exact instant at which it is needed.
     Sampling,
 }
 
 impl Cause {
-    /// All causes, in the order of tables.
+    /// All causes, in the order of the rows in tables.
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
     /// Returns the name of the cause in tables and files.
@@ -49,10 +50,10 @@ impl Cause {
     }
 }
 
-/// Time for which a predictor receives reports before a question with reports of its own, in picoseconds.
+/// Time span of the reports that a predictor receives before each request with separate reports, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// Estimator of the head's pose from the reports that are known at an instant.
+/// An estimator of the head's pose from the reports that are known at an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
@@ -63,7 +64,7 @@ enum Way {
     Following(Follower),
     /// One predictor receives all measurements up to the requested instant.
     AtOnce(Follower),
-    /// Each question has reports of its own. The newest of them arrives at the instant of the question.
+    /// Each request has separate reports. The newest report arrives at the instant of the request.
     Fresh(TrackerModel),
 }
 
@@ -94,8 +95,8 @@ impl Estimator {
         Self { views: Arc::clone(views), way }
     }
 
-    /// Returns the pose in the scene at the instant `at`, from reports that had arrived by `known`. Calls must have
-    /// non-decreasing values of `known`.
+    /// Returns the pose in the scene at the instant `at`, from reports that had arrived by `known`. From call to call,
+    /// `known` must not decrease.
     pub fn pose(&mut self, known: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
@@ -107,12 +108,12 @@ impl Estimator {
     }
 }
 
-/// Returns a tracker from a configuration from which a cause of error was removed.
+/// Returns a tracker model for a configuration without one cause of error.
 fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns the run's predictor behind another tracker, for the length of the run's reports.
+/// Returns the run's predictor with the reports of another tracker, until the end of the run.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);
@@ -122,8 +123,9 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns a pose from reports of which the newest arrives at `known`. The reports come from a motion that is shifted
-/// in time, by the age of the run's newest report at `known`.
+/// Returns a pose from reports whose newest one arrives at `known`.
+///
+/// The reports come from a motion that is shifted in time, by the age of the run's newest report at `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.

@@ -33,8 +33,9 @@ pub enum Pixels {
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
-/// Returns the parameters whose values no source supports. Such a value lies outside the stated range of its parameter,
-/// and neither the preset nor the pipeline sets it.
+/// Returns the parameters whose values no source supports.
+///
+/// Such a value lies outside the stated range of its parameter, and differs from the values of preset and pipeline.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -42,8 +43,10 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
     config.out_of_range().into_iter().filter(|parameter| !usual.contains(parameter)).collect()
 }
 
-/// Returns a warning if an experiment at the cycle level contains work without i860 code. Such work takes the times of
-/// the table (`gp.*`). Returns `None` if all work has code, or if the level is not [`Level::Cycle`].
+/// Returns a warning if an experiment at the cycle level contains work without i860 code.
+///
+/// Work without code takes its times from the table (`gp.*`). Returns `None` if all work has code, or if the level is
+/// not [`Level::Cycle`].
 #[must_use]
 pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
@@ -77,14 +80,16 @@ pub struct Experiment {
     pub(crate) rehearsed: Option<Arc<DryRun>>,
 }
 
-/// Functions by which a closed form estimates an experiment, before or after a run.
+/// Functions by which a pipeline's analytic model estimates results of an experiment, before or after a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimates {
-    /// Function that returns the number of fields until the first picture after the warm-up is shown. The function
-    /// returns `None` if no such picture will be shown, or if the closed form cannot tell.
+    /// Function that estimates the number of fields until the first picture after start-up is shown.
+    ///
+    /// The function returns `None` if no such picture will be shown, or if the model cannot tell.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// Function that returns the largest number of primitives, counted from the first of the scene, that are all shown
-    /// in time. The function returns `None` if the closed form cannot tell.
+    /// Function that estimates how many of the scene's first primitives the pipeline can show in time.
+    ///
+    /// The function returns `None` if the model cannot tell.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
@@ -143,7 +148,7 @@ impl Experiment {
         self
     }
 
-    /// Sets the host computer. A host supplies a clock and the worker that computes the pixels of [`Pixels::All`]. The
+    /// Sets the host computer, which supplies a clock and the worker that computes the pixels of [`Pixels::All`]. The
     /// host changes no result.
     #[must_use]
     pub fn host(mut self, host: impl Host + 'static) -> Self {
@@ -151,8 +156,8 @@ impl Experiment {
         self
     }
 
-    /// Handles simultaneous events in an order that is hashed from a seed. A correct model gives the same results in
-    /// every order.
+    /// Handles simultaneous events in a pseudo-random order derived from a seed. A correct model gives the same results
+    /// in every order.
     #[must_use]
     pub const fn shuffle_ties(mut self, seed: u64) -> Self {
         self.shuffle = Some(seed);
@@ -190,42 +195,45 @@ impl Experiment {
 
     /// Sets a head with a tracker. Without a head, the pipeline follows the scene's own motion without any delay.
     ///
-    /// If the head predicts, the experiment runs twice. The first run, a dry run without prediction, finds the time at
-    /// which each view is seen.
+    /// If the head's pose is predicted, the experiment runs twice. The first run is a dry run without prediction, which
+    /// finds the time at which each view is seen.
     #[must_use]
     pub fn head(mut self, head: impl Into<Arc<Head>>) -> Self {
         self.head = Some(head.into());
         self
     }
 
-    /// Makes the host begin a frame only when its tracker reports a pose, so that the pipeline is never full. A latency
-    /// measurement from outside the machine works in the same way. Without a head, or if the host does not begin
-    /// frames, the setting has no effect.
+    /// Makes the host begin a frame only when its tracker reports a pose, so that frames do not queue in the pipeline.
+    ///
+    /// A latency measurement from outside the machine works in the same way. The setting has no effect without a head,
+    /// or if the pipeline's host does not begin frames.
     #[must_use]
     pub const fn on_demand(mut self) -> Self {
         self.on_demand = true;
         self
     }
 
-    /// Sets the functions that estimate values for error messages, by the pipeline's closed form. The message about a
-    /// run that is too short can then recommend a number of fields. The message about a scene that is too large can
-    /// recommend a number of triangles.
+    /// Sets the functions that estimate values for error messages, from the pipeline's analytic model.
+    ///
+    /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
+    /// is too large can recommend a number of triangles.
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;
         self
     }
 
-    /// Sets the streaming observer of a run with [`Keep::Statistics`]. A report about a head needs records that such a
-    /// run discards, so an observer must process these records during the run. A run with [`Keep::Everything`] needs no
-    /// observer.
+    /// Sets the streaming observer of a run with [`Keep::Statistics`].
+    ///
+    /// A report about a head needs records that such a run discards, so an observer must process these records during
+    /// the run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
         self
     }
 
-    /// Returns all records of a run of this experiment that are kept, without pictures.
+    /// Returns all records of a run of this experiment that remain in memory, without pictures.
     pub(crate) fn settled<'a>(
         &'a self,
         record: &'a Record,
@@ -249,29 +257,34 @@ impl Experiment {
         }
     }
 
-    /// Returns the largest number of primitives of the scene that are all shown in time, by the closed form. Returns
-    /// `None` without a closed form.
+    /// Returns an estimate of how many of the scene's first primitives can be shown in time.
+    ///
+    /// The estimate comes from the pipeline's analytic model. Returns `None` without such a model.
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
     }
 
-    /// Sets the optics of the head-mounted display and the distance of the viewer's eyes. The number of pixels is that of the machine's
-    /// display.
+    /// Sets the optics of the head-mounted display and the distance between the viewer's eyes. The resolution comes
+    /// from the machine's display.
     #[must_use]
     pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
         self.hmd = *hmd.config();
         self
     }
 
-    /// Returns the head-mounted display. Its pictures have the size of the papers' display; a run takes the size of the machine's.
+    /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
+    /// machine's display instead.
     #[must_use]
     pub const fn hmd(&self) -> &HmdConfig {
         &self.hmd
     }
 
-    /// Begins the result window at a period of the first display, or later where start-up takes longer. Runs of different pipelines are
-    /// evaluated over the same periods in this way, to within one interval between due pictures.
+    /// Sets the period of the first display at which the result window begins. The window begins later if start-up
+    /// takes longer.
+    ///
+    /// With this setting, different pipelines are evaluated over the same periods, to within one interval between due
+    /// pictures.
     #[must_use]
     pub const fn results_from(mut self, period: PeriodNumber) -> Self {
         self.results_from = Some(period);
@@ -302,15 +315,15 @@ impl Experiment {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
-    /// Returns the instant of a picture's display time for which its view is drawn, such as the middle or the first
-    /// pixel.
+    /// Returns the instant for which the view of a picture is drawn, within the time in which the picture is displayed.
+    /// Examples are the middle and the first pixel.
     #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
-    /// Returns a hash of everything on which the trace depends: machine, pipeline with its settings, contents of the
-    /// scene, fields, seed, level and head.
+    /// Returns a hash of everything that affects the trace: machine, pipeline with its settings, contents of the scene,
+    /// number of fields, seed, level and head.
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
@@ -394,7 +407,7 @@ impl Experiment {
         PeriodNumber::FIRST.after(self.fields)
     }
 
-    /// Returns the seed of the sway of the head motion.
+    /// Returns the seed of the pseudo-random head motion.
     #[must_use]
     pub const fn motion_seed(&self) -> u64 {
         self.seed
@@ -406,7 +419,7 @@ impl Experiment {
         self.level
     }
 
-    /// Returns which pixels are computed.
+    /// Returns the choice of the pixels that are computed.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels

@@ -1,4 +1,4 @@
-//! Record of the face updates that a host has requested.
+//! Record of the cube-face updates that a host has requested.
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// A requested update of a display memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequestedUpdate {
-    /// Number of the update, counted over all memories.
+    /// Number of the update, in one count over all memories.
     pub picture: PictureNumber,
-    /// View whose eye the update was drawn from.
+    /// Number of the view whose eye position was used to draw the update.
     pub view: ViewNumber,
     /// Index of the display memory.
     pub memory: usize,
@@ -20,7 +20,7 @@ pub struct RequestedUpdate {
     pub structures: Arc<[bool]>,
 }
 
-/// Record of the updates of a run, except discarded ones. The record grows while the run goes on. Clones share the same
+/// A record of the updates of a run, except discarded ones. The record grows during the run. Clones share the same
 /// record.
 #[derive(Clone, Debug, Default)]
 pub struct RequestedUpdates(Arc<Mutex<Held>>);
@@ -29,7 +29,7 @@ pub struct RequestedUpdates(Arc<Mutex<Held>>);
 struct Held {
     /// Number of updates that were requested so far, by memory.
     asked: BTreeMap<usize, u64>,
-    /// Kept updates, in order. Each has the number of earlier updates of its memory.
+    /// Updates in memory, in order. Each has the number of earlier updates of the same display memory.
     notes: Vec<(u64, RequestedUpdate)>,
 }
 
@@ -41,21 +41,22 @@ impl RequestedUpdates {
         *asked += 1;
     }
 
-    /// Returns all kept updates, in order.
+    /// Returns all updates that were not discarded, in order.
     #[must_use]
     pub fn all(&self) -> Vec<RequestedUpdate> {
         self.held().notes.iter().map(|(_, note)| note.clone()).collect()
     }
 
-    /// Returns the kept updates of a memory, by the number of earlier updates of that memory.
+    /// Returns the updates of a display memory that were not discarded. The key is the number of earlier updates of
+    /// this memory.
     pub(crate) fn of_memory(&self, memory: usize) -> BTreeMap<u64, RequestedUpdate> {
         let held = self.held();
         let of_memory = held.notes.iter().filter(|(_, note)| note.memory == memory);
         of_memory.cloned().collect()
     }
 
-    /// Discards the updates of a memory before the update `number`, because the memory shows this update or a later
-    /// one.
+    /// Discards the updates of a display memory before the update `number`, because the memory now shows this update or
+    /// a later one.
     pub(crate) fn keep_from(&self, memory: usize, number: u64) {
         self.held().notes.retain(|(before, note)| note.memory != memory || *before >= number);
     }

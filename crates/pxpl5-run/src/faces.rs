@@ -1,4 +1,4 @@
-//! History of the faces that were drawn around a head, and the latency of head rotation.
+//! History of the cube faces that were drawn around a head, and the latency of head rotation.
 
 use crate::face_notes::{RequestedUpdate, RequestedUpdates};
 use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
@@ -9,7 +9,7 @@ use pxpl5_display::Display;
 use pxpl5_machine::Record;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
-/// An update that a display memory shows, from a period on.
+/// An update of a display memory, with the period from which the memory shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownUpdate {
     /// Update that is shown.
@@ -25,15 +25,15 @@ pub struct FaceHistory {
 }
 
 impl FaceHistory {
-    /// Returns the history of a run, as far as its records are kept. Returns `None` if the display of the run takes no
-    /// faces.
+    /// Returns the history of a run, from the records in memory. Returns `None` if the run's display does not accept
+    /// cube faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::held(outcome.record(), outcome.face_notes())
     }
 
-    /// Returns the history from the records of a run that may still be going on. Returns `None` if the display of the
-    /// run takes no faces.
+    /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
+    /// display does not accept cube faces.
     #[must_use]
     pub fn held(record: &Record, notes: &RequestedUpdates) -> Option<Self> {
         let display = display(record)?;
@@ -53,7 +53,7 @@ impl FaceHistory {
         self.memories.len()
     }
 
-    /// Returns what a memory shows in a period; `None` before its first update.
+    /// Returns the update that a memory shows in a period. Returns `None` before the memory's first update.
     #[must_use]
     pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownUpdate> {
         let shown = self.memory(memory);
@@ -67,7 +67,7 @@ impl FaceHistory {
     }
 }
 
-/// Returns the updates of a memory whose swaps are recorded. A memory shows its updates in order, each from a swap on.
+/// Returns the updates of a memory whose swaps are recorded. Each swap shows the next update of the memory.
 fn shown(record: &Record, notes: &RequestedUpdates, memory: usize, port: NodeId) -> Vec<ShownUpdate> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
@@ -81,14 +81,14 @@ pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> 
 }
 
 impl OrientationTiming {
-    /// Returns the orientation timing of a run, or `None` if the display of the run takes no faces.
+    /// Returns the orientation timing of a run, or `None` if the run's display does not accept cube faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::of_run(&outcome.settled())
     }
 
-    /// Returns the orientation timing of a run that may still be going on. Returns `None` if the display of the run
-    /// takes no faces.
+    /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
+    /// does not accept cube faces.
     #[must_use]
     pub fn of_run(settled: &FinalResults<'_>) -> Option<Self> {
         let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
@@ -97,15 +97,15 @@ impl OrientationTiming {
 }
 
 impl Outcome {
-    /// Returns the memories of a display with faces, in order of decreasing update rate. The slice is empty for any
-    /// other display.
+    /// Returns the memories of a display with cube faces, in order of decreasing update rate. The slice is empty for
+    /// any other display.
     #[must_use]
     pub fn display_memories(&self) -> &[DisplayMemory] {
         display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
     }
 
     /// Returns the rotation latency of the middle pixel of every field, from the first field that has one. The list is
-    /// empty without a tracked head, or if the display takes no faces.
+    /// empty without a tracked head, or if the display does not accept cube faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
         let run = self.settled();
@@ -115,7 +115,7 @@ impl Outcome {
 
 impl FinalResults<'_> {
     /// Returns the rotation latency of the middle pixel of each given field. Fields without a latency are left out. The
-    /// fields must be final.
+    /// results of the fields must be final.
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };

@@ -28,9 +28,11 @@ impl Fingerprint {
         fingerprint
     }
 
-    /// Returns a hash of everything in a scene that can be seen or that takes time: primitives, structures, light and
-    /// motion. The scene's name is not part of the hash. The seed of the motion is not part of it either, because an
-    /// experiment sets the seed.
+    /// Returns a hash of a scene: everything that can be seen or that takes time, which is primitives, structures,
+    /// light and motion.
+    ///
+    /// The hash does not cover the scene's name. It does not cover the seed of the motion either, because an experiment
+    /// sets the seed.
     ///
     /// The hash covers the numbers one after the other, with the least significant byte first. A list is its length (64
     /// bits) and its entries. An enum value is a byte, counted from 0 in the order of declaration.

@@ -1,4 +1,4 @@
-//! A head, a tracker and a predictor, from which a pipeline gets its views.
+//! A head, a tracker and a predictor. From them, a pipeline gets its views.
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
@@ -13,26 +13,27 @@ use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Traini
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, SettingError};
 
-/// A motion that several readers share.
+/// A head motion that several readers share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
 /// Error for a head that cannot be simulated.
 pub type HeadError = SettingError;
 
-/// Origin of the numbers of a predictor.
+/// Origin of the parameters of a predictor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
-    /// The user has given the numbers.
+    /// The user has set the parameters.
     Given,
-    /// A dry run will find the numbers, for the interval over which the pipeline predicts.
+    /// A dry run will find the parameters, for the interval over which the pipeline predicts.
     ToBeTuned,
-    /// A dry run found the numbers. The first training covers all poses. The second one covers orientations alone, for
-    /// a display that predicts orientations over another interval.
+    /// A dry run has found the parameters. The first training covers all poses.
+    ///
+    /// The second training covers orientations alone, for a display that predicts orientations over another interval.
     Tuned(Option<Training>, Option<Training>),
 }
 
-/// Identifier of the tuning method in names of experiments. The tuned numbers follow from the method and from all other
-/// settings.
+/// Identifier of the tuning method in names of experiments. The method and the other settings determine the tuned
+/// parameters.
 const TUNING: &str = "for its interval and motion, version 1";
 
 /// A head with its motion, tracker and predictor, and with the raster correction of its display.
@@ -68,13 +69,14 @@ impl fmt::Debug for Head {
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker. A dry run
-    /// tunes the predictor's numbers for the motion and for the interval over which the pipeline predicts. See
-    /// [`tune`](tracking::predict::tune).
+    /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker.
+    ///
+    /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
+    /// See [`tune`](tracking::predict::tune).
     ///
     /// # Errors
     ///
-    /// [`HeadError`] names the setting, what was expected and what was found.
+    /// [`HeadError`] names the setting, the expected values and the value found.
     pub fn new(
         motion: Arc<dyn Motion + Send + Sync>,
         tracker: TrackerConfig,
@@ -85,11 +87,11 @@ impl Head {
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// Creates a head whose predictor has the given numbers and is not tuned.
+    /// Creates a head whose predictor has the given parameters and is not tuned.
     ///
     /// # Errors
     ///
-    /// As [`Head::new`].
+    /// Like [`Head::new`].
     pub fn predicted_by(
         motion: Arc<dyn Motion + Send + Sync>,
         tracker: TrackerConfig,
@@ -119,15 +121,15 @@ impl Head {
         Self { motion, ..self }
     }
 
-    /// Makes the run tune the numbers of the predictor. The search begins at the present numbers.
+    /// Makes a run tune the parameters of the predictor. The search begins at the current parameters.
     #[must_use]
     pub const fn tuned(mut self) -> Self {
         self.numbers = Numbers::ToBeTuned;
         self
     }
 
-    /// Replaces the kind of the predictor. The numbers stay the same. If the old predictor is tuned, the new one is
-    /// tuned too.
+    /// Replaces the kind of the predictor and keeps the parameters. If the old predictor is tuned, the new one is tuned
+    /// too.
     #[must_use]
     pub const fn predicting(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
@@ -149,8 +151,8 @@ impl Head {
         Ok(Self { judge_at_m: Some(metres), ..self })
     }
 
-    /// Returns the distance at which pixel errors are evaluated, in metres. `None` stands for the distance of the
-    /// scene's content.
+    /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
+    /// content.
     #[must_use]
     pub const fn judge_at_m(&self) -> Option<f64> {
         self.judge_at_m
@@ -163,8 +165,8 @@ impl Head {
         self
     }
 
-    /// Sets the instant of a picture's display time for which its view is predicted, such as the middle or the first
-    /// pixel.
+    /// Sets the instant for which a picture's view is predicted, within the time in which the picture is displayed.
+    /// Examples are the middle and the first pixel.
     #[must_use]
     pub const fn with_aim(mut self, aim: Aim) -> Self {
         self.aim = aim;
@@ -185,7 +187,7 @@ impl Head {
         &self.unsupported_parameters
     }
 
-    /// Replaces the tracker's reports by the given ones. The given reports must be in order of arrival.
+    /// Replaces the tracker's reports by the given reports, which must be sorted by arrival time.
     #[must_use]
     pub fn reporting(self, reports: Vec<TrackerReport>) -> Self {
         Self { reports: Some(reports.into()), ..self }
@@ -202,7 +204,7 @@ impl Head {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the reports of the tracker about a motion, or the reports that replace them, in order of arrival.
+    /// Returns the tracker's reports about a motion, or the reports that replace them, in order of arrival.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -210,8 +212,8 @@ impl Head {
         }
     }
 
-    /// Returns the instant of a picture's display time for which its view is predicted, such as the middle or the first
-    /// pixel.
+    /// Returns the instant for which a picture's view is predicted, within the time in which the picture is displayed.
+    /// Examples are the middle and the first pixel.
     #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
@@ -255,33 +257,33 @@ impl Head {
         hash
     }
 
-    /// Returns true if poses are predicted.
+    /// Returns true if the head's pose is predicted.
     #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
     }
 
-    /// Returns true if a run tunes, or has tuned, the numbers of the predictor.
+    /// Returns true if a run tunes, or has tuned, the parameters of the predictor.
     #[must_use]
     pub fn is_tuned(&self) -> bool {
         self.numbers != Numbers::Given
     }
 
-    /// Returns true if the numbers of the predictor are still to be tuned.
+    /// Returns true if the parameters of the predictor are not tuned yet and must be tuned.
     pub(crate) fn is_to_be_tuned(&self) -> bool {
         self.numbers == Numbers::ToBeTuned && self.predicts()
     }
 
-    /// Returns this head with a predictor that is tuned for an interval, in picoseconds, between a report and the
-    /// predicted instant.
+    /// Returns this head with a predictor that is tuned for an interval from a report to the predicted instant. The
+    /// interval is in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
         let tuned = tuned.expect("checked by Head::new");
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
     }
 
-    /// Returns this head with the predictor's numbers for orientations tuned for an interval in picoseconds. The
-    /// numbers for positions stay the same.
+    /// Returns this head with the predictor's parameters for orientations tuned for an interval in picoseconds. The
+    /// parameters for positions stay the same.
     pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
         let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
         let Tuned { config: of_turns, training } = tuned.expect("checked by Head::new");
@@ -300,20 +302,22 @@ impl Head {
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }
 
-    /// Returns the predictor with its numbers. In an outcome, the numbers are those with which the run was done.
+    /// Returns the predictor's kind and parameters. In an outcome, the parameters are those that the run used.
     #[must_use]
     pub const fn predictor(&self) -> &PredictorConfig {
         &self.predictor
     }
 
-    /// Returns the data on which the predictor was tuned. Returns `None` if the numbers were given, or before the run.
+    /// Returns the data from which the predictor was tuned. Returns `None` if the user set the parameters, or before
+    /// the run.
     #[must_use]
     pub const fn training(&self) -> Option<&Training> {
         if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Returns the data on which the numbers for orientations were tuned separately. Only a display that latches
-    /// orientations alone needs them. Returns `None` otherwise.
+    /// Returns the data from which the parameters for orientations were tuned separately. Returns `None` otherwise.
+    ///
+    /// Only a display that latches orientations needs separate parameters.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
@@ -346,7 +350,7 @@ impl Head {
     }
 }
 
-/// Iterator over reports that were given by the caller.
+/// An iterator over reports that the caller supplied.
 struct GivenReports {
     given: Arc<[TrackerReport]>,
     next: usize,

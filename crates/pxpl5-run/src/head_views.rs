@@ -1,4 +1,4 @@
-//! Records of the poses that a pipeline requested, with the reports from which each pose was computed.
+//! Records of the poses that a pipeline requested, and of the tracker reports that each pose used.
 
 use crate::display_list::view;
 use crate::head::Head;
@@ -20,32 +20,33 @@ use tracking::tracker::TrackerReport;
 /// A pose that a pipeline requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledPose {
-    /// Number of the view that the pose is for, as the pipeline counts views.
+    /// Number of the view for which the pose was requested, as counted by the pipeline.
     pub number: ViewNumber,
-    /// Instant up to which arrived reports could be used.
+    /// Instant of the request: tracker reports that had arrived by then could be used.
     pub known: Time,
     /// Measurement time of the newest report that was used. `None` before the first report.
     pub measured_at: Option<Time>,
     /// Arrival time of the newest report that was used. `None` before the first report.
     pub arrived_at: Option<Time>,
-    /// Instant that the view's picture is drawn for, by the head's [`Aim`](crate::Aim). Moving objects are placed as of
-    /// this instant.
+    /// Instant for which the view's picture is drawn, by the head's [`Aim`](crate::Aim). Moving objects are placed at
+    /// their positions at this instant.
     pub objects_at: Time,
-    /// Instant that the pose was predicted for. `None` without prediction: the newest report was used unchanged.
+    /// Instant for which the pose was predicted. `None` without prediction: the newest report was used unchanged.
     pub predicted_for: Option<Time>,
-    /// Pose in the scene's coordinates.
+    /// Pose of the head in the scene's coordinates.
     pub pose: Pose,
 }
 
-/// Times of the newest report that a predictor has accepted.
+/// Arrival and measurement times of the newest report that a predictor has received.
 #[derive(Clone, Copy, Debug, Default)]
 struct Newest {
     measured_at: Option<Time>,
     arrived_at: Option<Time>,
 }
 
-/// A predictor that receives reports as simulated time advances. A report's content is computed only after its arrival,
-/// because the motion of an interactive head is unknown before that.
+/// A predictor that receives tracker reports as simulated time advances.
+///
+/// The content of a report is computed only after its arrival, because an interactive head's motion is unknown before.
 pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
@@ -54,18 +55,18 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a follower of the given reports.
+    /// Creates a predictor that receives the given reports.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
 
-    /// Creates a follower of the reports that reach the host of a head before an instant.
+    /// Creates a predictor that receives all reports that reach a head's host before an instant.
     fn of_head(head: &Head, until: Time) -> Self {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Feeds the predictor all reports that had arrived by `known`. For an earlier `known` than before, the predictor
-    /// does not go back.
+    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than before, the predictor
+    /// keeps the later reports.
     fn follow(&mut self, known: Time) {
         while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
             let Some(report) = self.contents.next() else { return };
@@ -90,7 +91,7 @@ impl Follower {
     }
 }
 
-/// The views that a head's tracker and predictor give to a pipeline, with records of the requested poses.
+/// The views that a head's tracker and predictor provide for a pipeline, with records of the requested poses.
 pub struct HeadViews {
     head: Arc<Head>,
     scene: Arc<Scene>,
@@ -113,8 +114,8 @@ impl fmt::Debug for HeadViews {
 }
 
 impl HeadViews {
-    /// Creates the views of a head for reports until `until`. The tracked motion begins at the start of the scene's own
-    /// motion.
+    /// Creates the views of a head for reports that arrive before `until`. The tracked motion begins where the scene's
+    /// own motion begins.
     pub(crate) fn new(
         head: Arc<Head>,
         scene: &Arc<Scene>,
@@ -140,8 +141,8 @@ impl HeadViews {
         )
     }
 
-    /// Returns the function by which a host requests the pose of the head alone. The function has a predictor of its
-    /// own.
+    /// Returns the function by which a host requests the pose of the head alone. The function uses a separate
+    /// predictor.
     pub(crate) fn poses(this: &Arc<Self>) -> Poses {
         let follower = Mutex::new(this.follower());
         let views = Arc::clone(this);
@@ -151,8 +152,8 @@ impl HeadViews {
         })
     }
 
-    /// Returns the measurement time of the first report that reaches the host at `arrived` or later. Returns `None` if
-    /// no such report exists.
+    /// Returns the measurement time of the first report that reaches the host at the instant `arrived` or later.
+    /// Returns `None` if no such report exists.
     #[must_use]
     pub fn measured_at(&self, arrived: Time) -> Option<Time> {
         Some(self.schedule().from(arrived)?.measured)
@@ -175,8 +176,8 @@ impl HeadViews {
         self.state().1.len() + self.schedule().held()
     }
 
-    /// Discards the records of poses that were requested before an instant, and of reports that were out of date by
-    /// then.
+    /// Discards records of poses that were requested before an instant, and of reports that newer reports had replaced
+    /// by then.
     pub(crate) fn discard_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
         self.schedule().discard_before(instant);
@@ -204,20 +205,20 @@ impl HeadViews {
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
-    /// Returns the arrival time of the first report that reaches the host at an instant or later.
+    /// Returns the arrival time of the first report that reaches the host at `instant` or later.
     pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().from(instant)?.arrives)
     }
 
-    /// Returns the arrival time of the first report that reaches the host after an instant, or `None` if no report
-    /// does.
+    /// Returns the arrival time of the first report that reaches the host after an instant. Returns `None` if no later
+    /// report exists.
     #[must_use]
     pub fn report_after(&self, after: Time) -> Option<Time> {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to the scene's. The start of the tracked motion maps to the start
-    /// of the scene's own motion.
+    /// Converts a pose from the tracker's coordinates to scene coordinates. The start of the tracked motion maps to the
+    /// start of the scene's own motion.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
@@ -242,15 +243,16 @@ impl HeadViews {
         &self.scene
     }
 
-    /// Returns the distance, in metres, at which errors of content without a position of its own are evaluated. The
-    /// default is the distance from the head's start to the centre of the scene, at least 0.1.
+    /// Returns the distance at which errors of content without a known position are evaluated, in metres.
+    ///
+    /// The default is the distance from the head's start to the centre of the scene, at least 0.1.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
         self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Returns the records of all requested poses that are still kept ([`Keep`](crate::Keep)), sorted by view number.
+    /// Returns the records of all requested poses that remain in memory ([`Keep`](crate::Keep)), sorted by view number.
     #[must_use]
     pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();
@@ -258,7 +260,7 @@ impl HeadViews {
         all
     }
 
-    /// Creates a second follower of the same reports, from the first report on, with a predictor of its own.
+    /// Creates a second predictor that receives the same reports, beginning with the first report.
     pub(crate) fn follower(&self) -> Follower {
         Follower::of_head(&self.head, self.until)
     }

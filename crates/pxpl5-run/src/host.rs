@@ -5,13 +5,15 @@ use std::fmt::Debug;
 
 /// Services of the host computer that a simulation uses. No service affects the trace.
 pub trait Host: Debug + Send + Sync {
-    /// Returns the time of the host's clock in seconds, or `None` without a clock. The clock may start at any moment.
+    /// Returns the time of the host's clock in seconds, or `None` without a clock. The zero of the clock is arbitrary.
     fn seconds(&self) -> Option<f64> {
         None
     }
 
-    /// Returns true if the result is no longer wanted. Runs, including dry runs, call this method from time to time. If
-    /// it returns true, they end with [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
+    /// Returns true if the caller no longer wants the result of a run.
+    ///
+    /// A run, also a dry run, calls this method from time to time. If the method returns true, the run ends with
+    /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
     fn is_stopped(&self) -> bool {
         false
     }

@@ -12,19 +12,21 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
 
 impl Outcome {
-    /// Returns the ideal picture of a surface at a time. An ideal renderer draws all lines, with the shading and the
-    /// number widths of the pipeline. The head is at its true pose, or at the pose of the scene's own motion if no head
-    /// is tracked.
+    /// Returns the ideal picture of a surface at a time. Returns `None` for a surface that the first display or the
+    /// pipeline does not have.
+    ///
+    /// An ideal renderer draws all lines, with the shading and the number widths of the pipeline. The head is at its
+    /// true pose, or at the pose of the scene's own motion if no head is tracked.
     ///
     /// For a still scene and a still head, every complete picture of the machine equals the ideal picture, except at
-    /// [ties](IdealPicture::ties). Returns `None` for a surface that the first display or the pipeline does not have.
+    /// [ties](IdealPicture::ties).
     #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
         ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)
     }
 }
 
-/// Returns the ideal picture of an experiment that may still be running.
+/// Returns the ideal picture of an experiment that has ended or is in progress.
 pub(crate) fn ideal_picture(
     experiment: &Experiment,
     record: &Record,

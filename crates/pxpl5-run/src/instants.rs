@@ -1,15 +1,16 @@
-//! Compact storage of instants by rising numbers, in two or three bytes each. The instants of 10^7 views take 30 MB
+//! Compact storage of instants by ascending numbers, in two or three bytes each. The instants of 10^7 views take 30 MB
 //! instead of 300 MB.
 
 use pxpl5_sim::Time;
 
-/// Number of entries from one place where decoding can begin to the next. A lookup decodes at most this number of
-/// entries.
+/// Number of entries between two points at which decoding can begin. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
-/// Compressed instants by rising numbers. Each entry stores how many numbers were skipped before it, and the difference
-/// from the expected instant. The expected instant repeats the last step but one. If every second step is equal, as for
-/// two fields or for two and three periods in turn, the difference is 0 and takes one byte.
+/// Compressed instants by ascending numbers.
+///
+/// Each entry stores how many numbers were skipped before it, and the difference from the expected instant. The
+/// expected instant assumes that the step before the last one is repeated. Steps may alternate, as for two fields, or
+/// for two and three periods in turn. The difference is then 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -18,14 +19,14 @@ pub(crate) struct Instants {
     count: u64,
 }
 
-/// A place where decoding can begin: an entry, and the position of the next one in the bytes.
+/// A point at which decoding can begin: an entry, and the byte position of the next entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Begin {
     at: At,
     next: usize,
 }
 
-/// An entry, with the last two steps before it in picoseconds, the older first.
+/// An entry, with the last two steps before it in picoseconds. The older step comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -34,8 +35,8 @@ struct At {
 }
 
 impl At {
-    /// Returns the instant that repeats the last step but one. Steps wrap around, so an instant may lie before its
-    /// predecessor.
+    /// Returns the next instant if the step before the last one is repeated. Steps wrap around, so an instant may lie
+    /// before its predecessor.
     const fn expected(&self) -> u64 {
         self.instant.wrapping_add(self.steps[0])
     }
@@ -89,7 +90,7 @@ const fn unfolded(folded: u64) -> u64 {
     folded >> 1 ^ (folded & 1).wrapping_neg()
 }
 
-/// Writes a number with seven bits in a byte, the lowest first. The eighth bit is set if more bytes follow.
+/// Writes a number with seven bits per byte, the lowest bits first. The eighth bit is set if more bytes follow.
 fn write(bytes: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         bytes.push(value as u8 | 0x80);

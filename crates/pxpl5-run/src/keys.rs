@@ -1,11 +1,11 @@
-//! Keys of pipelines: the settings that experiment files and the command line can change.
+//! Keys: the settings of pipelines that experiment files and the command line can change.
 
 use address_recalculation::{ArpError, Lens};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// Value of a pipeline's key.
+/// The value of a pipeline's setting (key).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyValue {
     /// A choice between true and false.
@@ -67,20 +67,20 @@ impl fmt::Display for KeyValues {
     }
 }
 
-/// A key of a pipeline: `name = value` in experiment files, `--name value` on the command line.
+/// A setting of a pipeline: `name = value` in experiment files, `--name value` on the command line.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// Name in experiment files. On the command line, `-` replaces `_`.
     pub name: &'static str,
     /// Help text of the key, in one line.
     pub about: &'static str,
-    /// Allowed values with their range.
+    /// Values that the key allows.
     pub values: KeyValues,
-    /// Machine parameters that the key sets too. A user must not set both the key and one of these parameters.
+    /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
     pub sets: &'static [&'static str],
 }
 
-/// Values of a pipeline's keys that the user has set. Each value must have been checked against its [`Key`].
+/// Values of the keys that the user has set. Each value must have been checked against its [`Key`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PipelineSettings {
     values: BTreeMap<&'static str, KeyValue>,
@@ -92,25 +92,25 @@ impl PipelineSettings {
         self.values.insert(key, value);
     }
 
-    /// Returns the value of a key that takes true or false, or `None` if the key was not set.
+    /// Returns the value of a true-or-false key, or `None` if the user did not set the key.
     #[must_use]
     pub fn flag(&self, key: &str) -> Option<bool> {
         if let Some(KeyValue::Flag(flag)) = self.values.get(key) { Some(*flag) } else { None }
     }
 
-    /// Returns the value of a key that takes whole numbers, or `None` if the key was not set.
+    /// Returns the value of a whole-number key, or `None` if the user did not set the key.
     #[must_use]
     pub fn whole(&self, key: &str) -> Option<u64> {
         if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
     }
 
-    /// Returns the value of a key that takes a lens, or `None` if the key was not set.
+    /// Returns the value of a lens key, or `None` if the user did not set the key.
     #[must_use]
     pub fn lens(&self, key: &str) -> Option<Lens> {
         if let Some(KeyValue::Text(text)) = self.values.get(key) { text.parse().ok() } else { None }
     }
 
-    /// Returns the value of a key that takes names, or `None` if the key was not set.
+    /// Returns the value of a key with named values, or `None` if the user did not set the key.
     #[must_use]
     pub fn name(&self, key: &str) -> Option<&'static str> {
         if let Some(KeyValue::Name(name)) = self.values.get(key) { Some(name) } else { None }

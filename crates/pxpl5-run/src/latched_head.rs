@@ -1,4 +1,4 @@
-//! Timing of the orientations that a display with faces latches.
+//! Timing of the head orientations that a display with cube faces latches.
 
 use crate::head_views::HeadViews;
 use crate::load_schedule::LoadSchedule;
@@ -7,7 +7,7 @@ use pxpl5_display::{Aim, Display, LightTimes};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// Returns the time span in which a field of a scan lights.
+/// Returns the time span in which a field of a scan is lit.
 pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
@@ -18,12 +18,12 @@ pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightTimes {
 /// Number of words of an orientation message on the host's connection to the display.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
-/// Timing of the orientation register of a display with faces: the report from which each orientation comes, and the
-/// instant that it is predicted for.
+/// Timing of the orientation register of a display with cube faces.
 ///
-/// A display that latches by field gets one orientation for each report. A display that latches by line or by pixel
-/// gets more orientations than reports. The host then predicts from the newest report, for each line or for as many
-/// parts of a line as its connection to the display can carry.
+/// The timing states which tracker report each orientation uses, and for which instant the orientation is predicted. A
+/// display that latches by field gets one orientation for each report. A display that latches by line or by pixel gets
+/// more orientations than reports. The host then predicts from the newest report, for each line or for as many parts of
+/// a line as its connection to the display can carry.
 #[derive(Clone, Copy, Debug)]
 pub struct OrientationTiming {
     scan: Scan,
@@ -35,8 +35,8 @@ pub struct OrientationTiming {
 }
 
 impl OrientationTiming {
-    /// Creates the timing for a display. Returns `None` if the display takes no faces. `link` is the transfer time of
-    /// an orientation from the host to the register.
+    /// Creates the timing for a display. Returns `None` if the display does not accept cube faces. `link` is the
+    /// transfer time of an orientation from the host to the register.
     pub(crate) fn before(display: &dyn Display, link: Span, aim: Aim) -> Option<Self> {
         let display: &AddressRecalculationPipeline = (display as &dyn std::any::Any).downcast_ref()?;
         let config = display.config();
@@ -46,7 +46,7 @@ impl OrientationTiming {
         Some(Self { scan, schedule, latch: config.latch, depth, link, aim })
     }
 
-    /// Returns the time at which a report's orientation is in the register.
+    /// Returns the time at which the orientation from a report is in the register.
     #[must_use]
     pub fn loaded(&self, report: Time) -> Time {
         report + self.link
@@ -59,9 +59,10 @@ impl OrientationTiming {
         self.scan.latches(self.latch, x, y, field)
     }
 
-    /// Returns the first time after an instant at which a new orientation is in the register. The first orientation
-    /// arrives at the start of the machine. Later ones follow each report, or the schedule of lines or pixels.
-    /// `reports` gives the first report after an instant.
+    /// Returns the first time after an instant at which a new orientation is in the register.
+    ///
+    /// The first orientation arrives when the machine starts. Later ones follow each report, or the schedule of lines
+    /// or pixels. `reports` returns the first report after an instant.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {
@@ -73,8 +74,8 @@ impl OrientationTiming {
         }
     }
 
-    /// Returns the instant at which the host sent the orientation that is in the register from `loaded` on, and the
-    /// instant that it was predicted for.
+    /// Returns the instant at which the host sent an orientation, and the instant for which it was predicted. `loaded`
+    /// is the time at which this orientation is in the register.
     pub(crate) fn predicted(&self, loaded: Time) -> (Time, Time) {
         let aimed = match self.schedule {
             Some(schedule) => schedule.aimed(schedule.at(loaded)),
@@ -83,13 +84,13 @@ impl OrientationTiming {
         (self.sent(loaded), aimed)
     }
 
-    /// Returns the time at which the host sends the orientation that is in the register from `loaded` on.
+    /// Returns the time at which the host sends the orientation that is in the register at the time `loaded`.
     fn sent(&self, loaded: Time) -> Time {
         Time(loaded.0.saturating_sub(self.link.0))
     }
 
-    /// Returns the aimed instant in the first field that latches the orientation that is in the register from `loaded`
-    /// on.
+    /// Returns the instant for which an orientation is predicted, in the first field that latches the orientation.
+    /// `loaded` is the time at which the orientation is in the register.
     fn aimed_at_field(&self, loaded: Time) -> Time {
         let mut field = self.scan.field_at(loaded);
         let y = |field: PeriodNumber| FieldParity::of_field(field).first_line();
@@ -99,9 +100,9 @@ impl OrientationTiming {
         self.aim.instant(&lights_of(&self.scan, field))
     }
 
-    /// Returns the time up to which reports were known for the orientation of a pixel, and the instant that the
-    /// orientation was predicted for. Before the first report, the host knows the head's start. Returns `None` before
-    /// an orientation is loaded.
+    /// Returns the time up to which the host used reports for a pixel's orientation, and the instant of the prediction.
+    ///
+    /// Before the first report, the host knows the head's initial pose. Returns `None` before an orientation is loaded.
     #[must_use]
     pub fn orientation_of_pixel(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;
@@ -114,8 +115,8 @@ impl OrientationTiming {
         Some((report, self.aimed_at_field(self.loaded(report))))
     }
 
-    /// Returns the parts of the time from the measurement of an orientation to the light of a pixel. Returns `None`
-    /// before the first report.
+    /// Returns the parts of the time from the measurement of an orientation until a pixel is lit. Returns `None` before
+    /// the first report.
     #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
@@ -136,20 +137,22 @@ impl OrientationTiming {
     }
 }
 
-/// Parts of the rotation latency: the time from the measurement of an orientation to the light of a pixel that uses the
-/// orientation. The sum of the parts is the latency.
+/// Parts of the rotation latency. The sum of the parts is the latency.
+///
+/// Rotation latency is the time from the measurement of an orientation until a pixel that uses the orientation is lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RotationLatency {
     /// Time from the tracker's measurement to the arrival of its report at the host.
     pub tracker: Span,
     /// Time from the report's arrival at the host until the orientation is in the display's register.
     pub host: Span,
-    /// Time from the arrival in the register until the orientation is latched. For latching by line or pixel, the host
-    /// holds the report for this time and predicts from it.
+    /// Time from the arrival in the register until the orientation is latched.
+    ///
+    /// For latching by line or pixel, the host waits for this time before it predicts from the report.
     pub wait_for_latch: Span,
-    /// Time through the stages of the display's pipeline.
+    /// Time of a pixel through the stages of the display's pipeline.
     pub pipeline: Span,
-    /// Time from the light of the first pixel that uses the latched orientation to the light of this pixel.
+    /// Time from the lighting of the first pixel with the latched orientation to the lighting of this pixel.
     pub scan: Span,
 }
 

@@ -1,4 +1,4 @@
-//! Division of a picture's latency into parts, which add up to the latency to the picosecond.
+//! Division of a picture's latency into parts. The parts add up to the latency to the picosecond.
 //!
 //! The parts follow the last eye, because the last eye decides when the picture can be shown. Each part begins at the
 //! end of the part before. A stage that overlaps an earlier stage counts only from the end of the earlier stage. Parts
@@ -10,14 +10,14 @@ use pxpl5_machine::{Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 
-/// Definition of one part of the time from the tracker's sample to light.
+/// Definition of one part of the time from the sample of the head's pose until the picture is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
     /// Name of the part in tables, files and timelines.
     pub name: &'static str,
-    /// Start and end of the part, in words.
+    /// Text that defines the start and the end of the part.
     pub definition: &'static str,
-    /// True if the part belongs to the latency that the papers state.
+    /// True if the latency stated in the papers includes this part.
     pub published: bool,
 }
 
@@ -50,20 +50,20 @@ const fn part(name: &'static str, definition: &'static str, published: bool) -> 
 pub struct LatencyParts {
     /// Picture to which the latency belongs.
     pub picture: PictureNumber,
-    /// Time at which the pose was sampled. If this time is unknown, the start of TRANSFORM.
+    /// Time at which the pose was sampled, or the start of TRANSFORM if the sample time is unknown.
     pub begin: Time,
     /// Duration of each part of [`LATENCY_PARTS`], in the same order. The sum is the latency.
     pub spans: [Span; LATENCY_PARTS.len()],
 }
 
 impl LatencyParts {
-    /// Returns the time at which the first pixel lights.
+    /// Returns the time at which the first pixel is lit.
     #[must_use]
     pub fn end(&self) -> Time {
         self.begin + self.spans.iter().copied().sum::<Span>()
     }
 
-    /// Returns the latency that the papers state, from the start of TRANSFORM to the retrace.
+    /// Returns the latency as defined in the papers, from the start of TRANSFORM to the retrace.
     #[must_use]
     pub fn published(&self) -> Span {
         LATENCY_PARTS.iter().zip(self.spans).filter(|(part, _)| part.published).map(|(_, span)| span).sum()
@@ -76,7 +76,7 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     let light = first_light(record, shown_at);
     let last = last_surface(stages);
     let first = last.map(|_| SurfaceId(0));
-    // Each entry holds the end of a part and the limit that this end cannot pass.
+    // Each entry holds the end of a part, and the latest time that this end can have.
     let ends = [
         (end_of(stages, Stage::Send, None).filter(|_| sent_for_it(stages, sampled_at)), transform_at),
         (begin_of(stages, Stage::Edit, None), transform_at),
@@ -101,13 +101,14 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     LatencyParts { picture, begin, spans }
 }
 
-/// Returns the time at which the first visible pixel lights in the period that contains an instant.
+/// Returns the time at which the first visible pixel is lit in the period that contains an instant.
 fn first_light(record: &Record, shown_at: Time) -> Time {
     let display = record.display();
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap and the light.
+/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap, and the lighting of the first
+/// pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],
@@ -116,7 +117,7 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// Surfaces that begin and end a latency: the first surface, the second surface, or from the first to the second.
+/// Surface whose begin starts a latency, and surface whose event ends it: two single surfaces, and the pair.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
 /// Function that returns the time of the event that ends a surface's latency.
@@ -129,8 +130,8 @@ pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
 ];
 
-/// Returns the times of a stereo frame, or `None` if a surface has no TRANSFORM or COPY of its own. `stages` must
-/// contain the stages of this picture only.
+/// Returns the times of a stereo frame, or `None` if a surface has no separate TRANSFORM or COPY. `stages` must contain
+/// only the stages of this picture.
 pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Option<Pair> {
     let [Some(first), Some(second)] = [SurfaceId(0), SurfaceId(1)].map(|surface| own_times(stages, surface)) else {
         return None;
@@ -143,7 +144,7 @@ pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Opt
     })
 }
 
-/// Returns the start of a surface's own TRANSFORM and the end of its own COPY.
+/// Returns the start of a surface's separate TRANSFORM and the end of its separate COPY.
 fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     let own = || stages.iter().filter(|span| span.surface == Some(surface));
     let transform_at = own().filter(|span| span.stage == Stage::Transform).map(|span| span.begin).min()?;
@@ -165,12 +166,12 @@ fn end_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> Opt
     spans_of(stages, stage, surface).filter_map(|span| span.end).max()
 }
 
-/// Returns the last surface that has a TRANSFORM of its own.
+/// Returns the last surface that has a separate TRANSFORM.
 fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND begins with the sample of this picture. Then SEND has the same picture numbers as the other
+/// Returns true if a SEND stage begins at the sample time of this picture. If so, SEND counts pictures like the other
 /// stages.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)

@@ -2,7 +2,7 @@
 //!
 //! | level | graphics processors | ring | renderers |
 //! |---|---|---|---|
-//! | [`Level::Analytic`] | closed form of the stage rules | time of copies and of clumps | a constant per command |
+//! | [`Level::Analytic`] | formulas for the stage rules | time of copies and of clumps | a constant per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!
@@ -24,15 +24,15 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Level of modelling, from closed forms to single instructions.
+/// The level of modelling, from formulas to single instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// Closed form of the stage rules, without events.
+    /// Formulas for the stage rules, without simulated events.
     Analytic,
     /// One event per message and command list.
     Transaction,
-    /// Like [`Level::Transaction`], with clocks from executed instructions instead of timing tables.
+    /// Like [`Level::Transaction`], but clocks come from executed instructions instead of timing tables.
     Cycle,
 }
 
@@ -57,11 +57,11 @@ impl fmt::Display for Level {
     }
 }
 
-/// A name that no level of modelling has.
+/// An error for a name that is not a level of modelling.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected analytic, transaction or cycle, found `{found}`")]
 pub struct UnknownLevel {
-    /// The name given.
+    /// The name that was given.
     pub found: String,
 }
 
@@ -74,8 +74,8 @@ impl FromStr for Level {
     }
 }
 
-/// Returns the machine with the renderer clocks that follow from instruction lists. Values that an experiment has
-/// changed stay.
+/// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed
+/// stay.
 pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layout) -> MachineConfig {
     let mut machine = machine.clone();
     let timing = &mut machine.renderer;

@@ -1,30 +1,30 @@
-//! Schedule of the orientations that a host sends to a display that latches lines or pixels.
+//! Schedule of the orientations that a host sends to a display that latches orientations by line or by pixel.
 
 use address_recalculation::{Latch, Scan};
 use pxpl5_display::{Aim, LightTimes};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// Schedule of the orientations that a host predicts for parts of a field. Each orientation is in the display's
-/// register when its first pixel is latched.
+/// A schedule of the orientations that a host predicts for parts of a field.
 ///
-/// With line latching, a line has one orientation. With pixel latching, a line has as many orientations as the host's
-/// connection can carry. The connection is idle from the last orientation of a line to the next line. If the transfer
-/// of an orientation takes longer than a line, the orientation serves several lines.
+/// Each orientation is in the display's register when the first pixel that uses it is latched. With latching by line, a
+/// line has one orientation. With latching by pixel, a line has as many orientations as the host's connection can
+/// carry. After the last orientation of a line, the connection is idle until the next line. If the transfer of an
+/// orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: Scan,
-    /// Delay through all stages of the display.
+    /// Delay of a pixel through all stages of the display.
     depth: Span,
-    /// Time from one load to the next within a line.
+    /// Time from one register load to the next within a line.
     link: Span,
-    /// Number of lines of a field that one load serves.
+    /// Number of lines of a field that use the same register load.
     lines: u32,
     loads: u32,
     aim: Aim,
 }
 
-/// Identifier of a load: its field, its first line within the field, and its number within that line.
+/// Identifier of a register load: its field, its first line within the field, and its index within this line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Load {
     field: PeriodNumber,
@@ -33,8 +33,9 @@ pub(crate) struct Load {
 }
 
 impl LoadSchedule {
-    /// Creates a schedule. Returns `None` for a display that latches whole fields: its host sends each orientation as
-    /// soon as it is known.
+    /// Creates a schedule. Returns `None` for a display that latches one orientation per field.
+    ///
+    /// The host of such a display sends each orientation as soon as it is known.
     pub(crate) fn new(scan: Scan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
@@ -51,27 +52,29 @@ impl LoadSchedule {
         self.scan.height() / 2
     }
 
-    /// Returns the instant at which a pixel of a line of a field lights.
+    /// Returns the instant at which a pixel of a line of a field is lit.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
         self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
     }
 
-    /// Returns the load whose orientation a pixel uses. Returns `None` for a pixel that the field does not scan.
+    /// Returns the register load whose orientation a pixel uses. Returns `None` for a pixel that the field does not
+    /// scan.
     pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
         let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
         let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which a load is in the register. The instant lies at most one pixel's time before its
-    /// first pixel is latched.
+    /// Returns the instant at which an orientation is in the register. It is at most one pixel's time before the first
+    /// pixel that uses the orientation is latched.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
     }
 
-    /// Returns the instant that a load is predicted for, by the aim, within the time in which the load's pixels light.
+    /// Returns the instant for which an orientation is predicted. It depends on the aim, and lies in the time span in
+    /// which the pixels with this orientation are lit.
     pub(crate) fn aimed(&self, load: Load) -> Time {
         let Load { field, line, number } = load;
         let last_line = (line + self.lines).min(self.height()) - 1;
@@ -85,13 +88,13 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the load with this number.
+    /// Returns the first pixel of a line that can use the register load with this index.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first load that is in the register after an instant.
+    /// Returns the first register load that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
@@ -115,13 +118,13 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the load that is in the register from exactly this instant on, or the first load after the instant.
+    /// Returns the register load that is complete at exactly this instant, or else the first one after it.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }
 }
 
-/// Returns the number of values below `end` for which `is_first` returns true. The function must return true for the
+/// Returns the number of values below `end` for which `is_first` returns true. `is_first` must return true for the
 /// first values and false for all others.
 fn partition(end: u32, is_first: impl Fn(u32) -> bool) -> u32 {
     let mut from = 0;
@@ -149,7 +152,7 @@ mod tests {
         LoadSchedule::new(scan, config.timing.depth(), latch, link, Aim::Middle).expect("no field")
     }
 
-    /// Returns all loads of two fields, in order.
+    /// Returns all register loads of two fields, in order.
     fn all(schedule: &LoadSchedule) -> Vec<Load> {
         let mut at = Time::ZERO;
         let mut found = Vec::new();

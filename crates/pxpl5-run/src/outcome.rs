@@ -60,7 +60,7 @@ impl Outcome {
         Self { experiment, record, head, notes, closed, reached, host_seconds }
     }
 
-    /// Returns all final results and kept records of the run, for evaluation after the run.
+    /// Returns all final results of the run and the records in memory, for evaluation after the run.
     #[must_use]
     pub fn settled(&self) -> FinalResults<'_> {
         let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
@@ -73,14 +73,14 @@ impl Outcome {
         self.closed.said.as_deref()?.downcast_ref()
     }
 
-    /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results that the sums do not
-    /// contain then cover only the last periods.
+    /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results without a streaming
+    /// observer then cover only the last periods.
     #[must_use]
     pub fn has_discarded_records(&self) -> bool {
         self.observation().forgotten.before > Time::ZERO
     }
 
-    /// Returns the sums over the whole run.
+    /// Returns the sums of results over the whole run.
     #[must_use]
     pub const fn tally(&self) -> &Tally {
         &self.closed.tally
@@ -92,8 +92,10 @@ impl Outcome {
         &self.experiment
     }
 
-    /// Returns all pictures that were begun and evaluated, complete or not. A run that keeps statistics only
-    /// ([`Keep`](crate::Keep)) returns only the last of its [`Tally::pictures`].
+    /// Returns all pictures that were begun and evaluated, complete or not.
+    ///
+    /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics ([`Keep`](crate::Keep)) returns only
+    /// the last of them.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
@@ -106,7 +108,7 @@ impl Outcome {
         self.closed.window
     }
 
-    /// Returns the pictures in the window.
+    /// Returns the pictures in the result window.
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
         let Some(window) = self.closed.window else { return &[] };
@@ -119,18 +121,18 @@ impl Outcome {
         &pictures[first..end]
     }
 
-    /// Returns the pictures in the window that were complete in time. Other pictures have no latency.
+    /// Returns the pictures in the result window that were complete in time. Other pictures have no latency.
     pub fn complete_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         self.steady_pictures().iter().filter(|times| times.is_shown())
     }
 
-    /// Returns the number of complete pictures in the whole run, including the warm-up.
+    /// Returns the number of complete pictures in the whole run, including start-up.
     #[must_use]
     pub const fn shown(&self) -> u64 {
         self.closed.tally.shown
     }
 
-    /// Returns the counts of due pictures by result. Returns `None` if the pipeline has no due pictures, or if the run
+    /// Returns the number of due pictures by result. Returns `None` if the pipeline has no due pictures, or if the run
     /// ended before the first.
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
@@ -138,15 +140,16 @@ impl Outcome {
         Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
     }
 
-    /// Returns a text that tells when a picture is due and in time, and which pictures are counted.
+    /// Returns a text that defines when a picture is due, when it is in time, and which pictures are counted.
     #[must_use]
     pub fn due_definition(&self) -> String {
         format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
     }
 
-    /// Returns the number of complete new pictures a second, over the window. At most one picture a period of the
-    /// display counts, because no more can be seen. Returns `None` if fewer than two were shown, or if all of them
-    /// belong to start-up.
+    /// Returns the number of complete new pictures per second, over the result window.
+    ///
+    /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
+    /// two pictures were shown, or if all of them belong to start-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
@@ -166,8 +169,8 @@ impl Outcome {
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 
-    /// Returns true if the viewer sees a complete screen at the end. A screen consists of one picture, or of the
-    /// pictures of two fields with interlaced lines. All of them must be in time.
+    /// Returns true if the viewer sees a complete screen at the end. A screen shows one picture, or the pictures of two
+    /// interlaced fields. All of these pictures must be in time.
     #[must_use]
     pub fn ends_complete(&self) -> bool {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
@@ -182,31 +185,33 @@ impl Outcome {
         &self.record
     }
 
-    /// Returns the views of the tracked head, or `None` without a tracked head.
+    /// Returns the views of the tracked head, or `None` if no head is tracked.
     #[must_use]
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.head.as_ref()
     }
 
-    /// Returns the requested updates of display memories, in order. A pipeline without faces has none.
+    /// Returns the requested updates of display memories, in order. The result is empty for a pipeline without cube
+    /// faces.
     #[must_use]
     pub const fn face_notes(&self) -> &RequestedUpdates {
         &self.notes
     }
 
-    /// Returns the time that the run took on the host, in seconds. Returns `None` on a host without a clock.
+    /// Returns the real time that the run took on the host computer, in seconds. Returns `None` on a host without a
+    /// clock.
     #[must_use]
     pub const fn host_seconds(&self) -> Option<f64> {
         self.host_seconds
     }
 
-    /// Returns the marks of firmware, the arrivals at displays and the swaps, in order of time.
+    /// Returns the time stamps of stages, the arrivals at displays and the swaps, each in order of time.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
     }
 
-    /// Returns all stages of all pictures. The times of COPY are those at the displays.
+    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
@@ -236,14 +241,15 @@ impl Outcome {
         self.record.tick(self.experiment.end())
     }
 
-    /// Returns the statistics of the latencies in milliseconds, over the complete pictures in the window. The pipeline
-    /// defines latency.
+    /// Returns the statistics of the latencies in milliseconds, over the complete pictures in the result window. The
+    /// pipeline defines its latency.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         self.closed.tally.latency_ms.statistics()
     }
 
-    /// Returns the statistics of the latencies in milliseconds; `None` of a run that showed no complete picture in its window.
+    /// Returns the statistics of the latencies in milliseconds. Returns `None` if the result window has no complete
+    /// picture.
     #[must_use]
     pub fn latency(&self) -> Option<Statistics> {
         Some(self.latency_ms()).filter(|statistics| statistics.n > 0)
@@ -256,7 +262,7 @@ impl Outcome {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
-    /// Returns the latency parts of the complete pictures in the window whose records are kept.
+    /// Returns the latency parts of the complete pictures in the result window whose records are in memory.
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
@@ -265,7 +271,7 @@ impl Outcome {
         parts.collect()
     }
 
-    /// Returns the summary that all levels of modelling provide, over the pictures in the window.
+    /// Returns the summary that all levels of modelling provide, over the pictures in the result window.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
@@ -287,7 +293,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the mean period of the first display over 60,000 periods, in milliseconds.
+    /// Returns the mean duration of a period of the first display over 60,000 periods, in milliseconds.
     #[must_use]
     pub fn field_ms(&self) -> f64 {
         field_ms(&self.record)

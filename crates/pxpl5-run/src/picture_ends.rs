@@ -1,12 +1,12 @@
-//! Records of how the pictures of a run ended, by period.
+//! Results of the pictures of a run, by display period.
 
 use pxpl5_wire::PeriodNumber;
 
-/// Number of pictures at the start of a run that are not evaluated, because the pipeline is still filling. TR94
-/// discards the first frames too.
+/// Number of pictures at the start of a run that are not evaluated, because the pipeline is not full yet. TR94 discards
+/// the first frames too.
 pub const WARM_UP_PICTURES: usize = 4;
 
-/// Result of a picture that was begun, from best to worst.
+/// The possible results of a picture that was begun, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PictureResult {
     /// The picture was complete and in time.
@@ -19,7 +19,7 @@ pub enum PictureResult {
 
 impl PictureResult {
     /// Returns the result of a picture. `is_whole` is true if the picture was complete when its period ended.
-    /// `is_in_time` is true if no part of the picture was late.
+    /// `is_in_time` is true if every part of the picture arrived in time.
     #[must_use]
     pub const fn of(is_whole: bool, is_in_time: bool) -> Self {
         match (is_whole, is_in_time) {
@@ -30,10 +30,11 @@ impl PictureResult {
     }
 }
 
-/// Results of the pictures of each period. A period takes one byte, so 10^7 fields take 10 MB.
+/// Results of the pictures of each display period. A period takes one byte, so 10^7 fields take 10 MB.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PictureResults {
-    /// One code for each period: 0 without a picture, otherwise 1 plus the index of the best result in `ALL`.
+    /// One code for each period: 0 if it has no picture, otherwise 1 plus the index in `ALL` of the period's best
+    /// result.
     of_periods: Vec<u8>,
     begun: usize,
     steady_from: Option<PeriodNumber>,
@@ -42,8 +43,8 @@ pub(crate) struct PictureResults {
 impl PictureResults {
     const ALL: [PictureResult; 3] = [PictureResult::Shown, PictureResult::Late, PictureResult::Incomplete];
 
-    /// Records the result of a picture that should be seen in a period. Pictures must be recorded in the order of their
-    /// periods.
+    /// Records the result of a picture, for the period in which the picture should be seen. Pictures must be recorded
+    /// in the order of their periods.
     pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureResult) {
         self.begun += 1;
         if self.begun > WARM_UP_PICTURES {
@@ -59,7 +60,7 @@ impl PictureResults {
         *best = if *best == 0 { code } else { code.min(*best) };
     }
 
-    /// Returns the period of the first picture after [`WARM_UP_PICTURES`]. Returns `None` if no more pictures were
+    /// Returns the period of the first picture after [`WARM_UP_PICTURES`]. Returns `None` if no later picture was
     /// begun.
     pub(crate) const fn steady_from(&self) -> Option<PeriodNumber> {
         self.steady_from

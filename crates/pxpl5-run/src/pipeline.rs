@@ -21,10 +21,10 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// View or views from which a part of the screen was drawn.
+/// The view or views from which a part of the screen was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// One view, by its number as the pipeline counts views.
+    /// One view, by its number as counted by the pipeline.
     View(ViewNumber),
     /// Interpolation between two views.
     Between {
@@ -34,8 +34,8 @@ pub enum Source {
         to: ViewNumber,
         /// Weight of the view `to`, from 0 to 1.
         part: f64,
-        /// True if positions on the screen are interpolated. False if positions in the view, before projection, are
-        /// interpolated.
+        /// True if screen positions are interpolated. False if positions in the coordinates of the view are
+        /// interpolated, before projection.
         on_screen: bool,
     },
 }
@@ -45,24 +45,26 @@ pub enum Source {
 pub struct Setup {
     /// Primitives that are drawn in every picture.
     pub list: Arc<DisplayList>,
-    /// Function that returns the newest view: transforms and edits.
+    /// Function that returns the newest view: its transforms, and the edits of moving structures.
     pub views: Views,
-    /// Function that returns a view for firmware that knows when the view will be seen.
+    /// Function that returns a view for a given display time, for firmware that knows when the view will be seen.
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
     /// For each structure of the scene, true if the structure moves by itself or with the head.
     pub moving: Arc<[bool]>,
-    /// Cells in which each structure lies. Empty unless the pipeline has cut the scene ([`Pipeline::cut`]).
+    /// Cells in which each structure lies. Empty unless the pipeline cut the scene into cells ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
-    /// Record of the updates that a pipeline with faces has requested.
+    /// Record of the updates that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
-    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel. Only
-    /// firmware that knows the display time uses the setting.
+    /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
+    /// middle and the first pixel.
+    ///
+    /// Only firmware that knows the display time uses this setting.
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
-    /// Function that returns the start of a frame, for a host that waits for the pipeline.
+    /// Function that returns the time at which a host that waits for the pipeline begins a frame.
     pub starts: FrameStarts,
     /// Times of the host's operations, in nanoseconds.
     pub host: HostTiming,
@@ -73,18 +75,19 @@ pub struct Setup {
 /// Times of one picture, which is a frame or a field, on its way through the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureTimes {
-    /// Number of the picture, as the pipeline counts pictures.
+    /// Number of the picture, as counted by the pipeline.
     pub picture: PictureNumber,
-    /// View that the picture shows. If the picture shows several views, the view of its middle.
+    /// View that the picture shows. If the picture shows several views, this is the view at its middle.
     pub view: ViewNumber,
-    /// Time at which the pose of the picture was sampled.
+    /// Time at which the head's pose for the picture was sampled.
     pub sampled_at: Option<Time>,
-    /// Time at which TRANSFORM began to work for the picture.
+    /// Time at which TRANSFORM began for the picture.
     pub transform_at: Time,
-    /// Time at which the last pixel of the picture was in the display. `None` while pixels are missing.
+    /// Time at which the last pixel of the picture arrived at the display. `None` while pixels are missing.
     pub copied_at: Option<Time>,
-    /// Retrace from which on the picture is shown. Without a swap, the time at which the beam meets the part that
-    /// represents the picture.
+    /// Time of the retrace at which the display begins to show the picture.
+    ///
+    /// Without a swap, this is the time at which the beam reaches the part of the picture that defines its times.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
@@ -98,18 +101,19 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine, and the rules by which the times of its pictures are found.
+/// A program for a whole machine, and the rules that determine the times of its pictures.
 pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
 
-    /// Returns the keys of the pipeline with their effective values. Name and settings together identify the pipeline.
+    /// Returns the settings of the pipeline with their current values. Name and settings together identify the
+    /// pipeline.
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         Vec::new()
     }
 
-    /// Returns the number of pictures that are drawn at a time, each for one surface of the first display. The number
-    /// is 1, or 2 for two eyes.
+    /// Returns the number of pictures drawn at the same time, each for one surface of the first display: 1, or 2 for
+    /// two eyes.
     fn eyes(&self) -> usize;
 
     /// Returns the layout of pixel memory.
@@ -120,7 +124,8 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Shading::Gouraud
     }
 
-    /// Returns the use that the pipeline makes of the i860 code, for the times of the code. The default is PPHIGS.
+    /// Returns the kind of i860 code that the pipeline uses, which determines the times of the code. The default is
+    /// PPHIGS.
     fn code_use(&self) -> CodeUse {
         CodeUse::Pphigs
     }
@@ -130,25 +135,28 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns the latch mode of a pipeline that draws the faces of a cube around the head, for a display that takes
-    /// faces ([`DisplayConfig::shows_cube_faces`](pxpl5_display::DisplayConfig::shows_cube_faces)). The latch mode tells whether
-    /// the display latches orientations by field, by line or by pixel. Returns `None` for other pipelines.
+    /// Returns the latch mode of a pipeline that draws cube faces around the head. Returns `None` for other pipelines.
+    ///
+    /// The latch mode states if the display latches orientations by field, by line or by pixel. The display must accept
+    /// cube faces ([`DisplayConfig::shows_cube_faces`](pxpl5_display::DisplayConfig::shows_cube_faces)).
     fn draws_faces(&self) -> Option<Latch> {
         None
     }
 
-    /// Returns the scene in pieces that are drawn at different times. Returns `None` if the host loads the scene
+    /// Returns the scene in segments that are drawn at different times. Returns `None` if the host loads the scene
     /// unchanged.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a scene that cannot be cut.
+    /// [`ConfigError`] for a scene that cannot be cut into segments.
     fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
         Ok(None)
     }
 
-    /// Returns a short description of the work of the graphics processors that has no i860 code. Returns `None` if all
-    /// work has code. At the cycle level, work without code takes the times of the table.
+    /// Returns a short description of the graphics processors' work that has no i860 code. Returns `None` if all work
+    /// has code.
+    ///
+    /// At the cycle level, work without code takes its times from the timing table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
         Some("what its firmware does besides messages")
     }
@@ -160,18 +168,22 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// Returns the begun pictures that, at `end`, are shown or have missed their deadline, in order.
+    /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The pictures
+    /// are in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
-    /// Returns the number of display periods before `end` in which the display turned old faces to a new head
-    /// direction. Each such period counts as a picture, although the pipeline drew nothing for it.
+    /// Returns the number of display periods before `end` in which the display showed old cube faces in a new head
+    /// direction.
+    ///
+    /// Each such period counts as a picture, although the pipeline drew nothing for it.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }
 
-    /// Returns true if [`Pipeline::pictures`] and [`Pipeline::late_regions`] need no old records. After
-    /// [`Machine::discard_before`], both must give the same results for later times. Only then can a long run discard
-    /// records.
+    /// Returns true if [`Pipeline::pictures`] and [`Pipeline::late_regions`] need no old records.
+    ///
+    /// After [`Machine::discard_before`], both functions must give the same results for later times. Only then can a
+    /// long run discard records.
     fn can_discard_records(&self) -> bool {
         false
     }
@@ -181,17 +193,20 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Returns the number of periods of the first display between pictures that are due. Returns `None` if no picture
-    /// is ever due. All counts and rates follow from this number and from [`Pipeline::pictures`]: see
+    /// Returns the number of periods of the first display from one due picture to the next. Returns `None` if no
+    /// picture is ever due.
+    ///
+    /// All counts and rates follow from this number and from [`Pipeline::pictures`]: see
     /// [`DuePictures`](crate::DuePictures).
     fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
     }
 
-    /// Returns the definition of latency for this pipeline, in a sentence.
+    /// Returns one sentence that defines latency for this pipeline.
     fn latency_definition(&self) -> &'static str;
 
-    /// Returns a sentence that tells when a picture is due and when it is in time, or why no picture is ever due.
+    /// Returns a sentence that defines when a picture is due and when it is in time. For pipelines without due
+    /// pictures, the sentence gives the reason.
     fn due_definition(&self) -> &'static str;
 
     /// Returns the number of entries of [`Pipeline::pictures`] that make up one whole picture.
@@ -204,20 +219,20 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         false
     }
 
-    /// Returns true if a whole picture is drawn for one pose. Only such a picture can be shifted by a raster to correct
-    /// the pose.
+    /// Returns true if a whole picture is drawn for one head pose. Only such a picture can be shifted by the display to
+    /// correct the pose.
     fn has_one_pose(&self) -> bool {
         true
     }
 
-    /// Returns the index of the copy to which an arrival belongs, for copies that are timed separately: 0, or 1 for the
-    /// second.
+    /// Returns the index of the copy to which an arrival belongs: 0, or 1 for the second copy. Each copy is timed
+    /// separately.
     fn copy_part(&self, _arrival: &Arrival) -> u8 {
         0
     }
 
     /// Returns the view that a part of a picture shows. `views` gives the view of each picture as in [`PictureTimes`].
-    /// `aim` is the instant that the part was drawn for.
+    /// `aim` is the instant for which the part was drawn.
     fn source(
         &self,
         _record: &Record,
@@ -236,7 +251,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         light_span(record, first, periods)
     }
 
-    /// Returns the time at which the middle of a picture lights.
+    /// Returns the time at which the middle of a picture is lit.
     fn light(&self, record: &Record, times: &PictureTimes) -> Time {
         let display = record.display();
         display.middle_light(0, display.period_at(times.shown_at)).unwrap_or(times.shown_at)
@@ -249,7 +264,8 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     }
 }
 
-/// Returns the time span in which the first surface lights, over `periods` periods of the first display, at least one.
+/// Returns the time span in which the first surface is lit, over `periods` periods of the first display. `periods` must
+/// be at least 1.
 pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightTimes {
     let display = record.display();
     let tick = display.tick(first);

@@ -1,4 +1,4 @@
-//! Preparation of a run: the dry run that finds when views are seen, and the tuning of the predictor.
+//! Preparation of a run: the dry run that finds the times at which views are seen, and the tuning of the predictor.
 
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
@@ -10,26 +10,29 @@ use crate::rehearsal_sum::DryRunObserver;
 use crate::sums::{ObserverFactory, StreamingObserver};
 use std::sync::Arc;
 
-/// Number of fields of a dry run for firmware that itself knows when its views are seen. So many fields are enough for
-/// the statistics of the prediction interval. If no picture is complete in so few fields, the dry run takes all fields.
+/// Number of fields of a dry run for firmware that knows when its views are seen.
+///
+/// This number suffices for the statistics of the prediction interval. If no picture is complete after so many fields,
+/// the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
 /// Results of the preparation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
-    /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times.
+    /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times itself.
     pub(crate) rehearsal: Option<SeenTimes>,
-    /// Head with a tuned predictor. `None` if there is nothing to tune.
+    /// Head with a tuned predictor. `None` if the predictor needs no tuning.
     pub(crate) head: Option<Arc<Head>>,
 }
 
 impl Experiment {
-    /// Performs the dry run now and stores its result in the experiment. A later run with another predictor reuses the
-    /// stored result. No other setting may change after this call.
+    /// Performs the dry run now and stores its result in the experiment.
+    ///
+    /// A later run with another predictor reuses the stored result. No other setting must change after this call.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`].
+    /// Like [`Experiment::run`].
     pub fn rehearsed(self) -> Result<Self, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(self) };
         let rehearsed = Some(self.rehearse(head)?);
@@ -42,7 +45,7 @@ impl Experiment {
         self.rehearsed.as_ref()
     }
 
-    /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs in the predictor only.
+    /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs only in the predictor.
     #[must_use]
     pub fn with_dry_run(self, rehearsed: Option<Arc<DryRun>>) -> Self {
         Self { rehearsed, ..self }
@@ -57,7 +60,7 @@ impl Experiment {
         Ok(Preparation { rehearsal, head: tuned.map(Arc::new) })
     }
 
-    /// Returns the head if it predicts and needs the result of a dry run.
+    /// Returns the head if its pose is predicted and the predictor needs the result of a dry run.
     fn predicting_head(&self) -> Option<&Arc<Head>> {
         let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
@@ -72,14 +75,14 @@ impl Experiment {
         Ok(Arc::new(rehearsed))
     }
 
-    /// Runs the experiment without prediction. A streaming observer keeps two or three bytes a view, for any length of
-    /// the run.
+    /// Runs the experiment without prediction. A streaming observer keeps two or three bytes per view, for any length
+    /// of the run.
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
         let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
         let plain =
             Self { head: plain, pixels: Pixels::Off, traffic: false, keep, sums: Some(sums), fields, ..self.clone() };
-        // A run with few pictures is also preceded by a dry run with few pictures.
+        // If the run has few pictures, the dry run before it has few pictures too.
         let outcome = match plain.perform(Preparation::default(), &[], |_, _| Ok(())) {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,
             run => run?,

@@ -4,24 +4,24 @@ use crate::reprojection::Reprojection;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Correction that a display applies while it scans its frame buffer.
+/// Correction that a display applies to a picture while it scans its frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {
-    /// No correction: each pixel is displayed in its own place.
+    /// No correction: each pixel is displayed at the position where it was drawn.
     #[default]
     Plain,
-    /// The picture is shifted during the scan by the error of the pose that it was drawn for (VDRT, Breglia 1981).
+    /// The picture is shifted during the scan, by the error of the pose for which it was drawn (VDRT, Breglia 1981).
     Vdrt,
-    /// Moved to the newest pose by a device.
+    /// A device moves the picture to the newest pose.
     Reprojected(Reprojection),
 }
 
 impl Raster {
-    /// All corrections without numbers of their own, with their names on the command line.
+    /// All corrections without parameters, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 
-    /// Returns how it moves pictures, VDRT as the device that it is; `None` where it does not.
+    /// Returns the device that moves pictures. VDRT also counts as a device. Returns `None` without a correction.
     #[must_use]
     pub const fn reprojection(self) -> Option<Reprojection> {
         match self {

@@ -1,4 +1,4 @@
-//! Registry of pipelines and displays. Code that offers, reads or compares pipelines iterates over a [`Registry`].
+//! Registry of pipelines and displays. To list, parse or compare pipelines, code iterates over a [`Registry`].
 
 use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};
@@ -11,31 +11,31 @@ use pxpl5_machine::{MachineConfig, NamedTable};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Condition under which a pipeline draws a scene in time.
+/// The condition that a pipeline must meet for a scene to count as drawn in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
-    /// Every picture that is due is shown in time.
+    /// Every due picture is shown in time.
     NoMissedRetrace,
-    /// At least this number of updates a second, in the rounded rates of the papers: 30 stands for 29.97 Hz of NTSC,
-    /// and 60 for 59.94 Hz.
+    /// The update rate is at least this number per second. The papers round rates: 30 stands for 29.97 Hz of NTSC, and
+    /// 60 for 59.94 Hz.
     RateHz(f64),
-    /// A mean latency of at most this number of fields.
+    /// The mean latency is at most this number of fields.
     LatencyFields(f64),
 }
 
-/// Kind of triangles in the growing scene of a limit search.
+/// Kind of triangles in the scene with which a limit search finds the largest load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestScene {
     /// Triangles that cover the whole screen.
     FullScreen,
-    /// Small triangles spread over the screen. Their size touches 1.3 regions an eye on average (TR94).
+    /// Small triangles spread over the screen. Each triangle touches 1.3 regions per eye on average (TR94).
     Typical,
 }
 
 impl TestScene {
-    /// All kinds of triangles, the larger first.
+    /// All kinds of triangles, starting with the largest.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
     /// Returns the name on the command line and in tables.
@@ -48,23 +48,23 @@ impl TestScene {
     }
 }
 
-/// Criterion by which the largest number of triangles that a pipeline draws in time is found.
+/// Criterion by which a search finds the largest number of triangles that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCriterion {
-    /// Condition that every scene within the limit must meet.
+    /// Condition that every scene up to the limit must meet.
     pub goal: Goal,
-    /// Kind of triangles in the growing scene.
+    /// Kind of triangles in the test scene.
     pub scene: TestScene,
-    /// Number of fields to simulate for each size, enough to reach a steady state.
+    /// Number of fields to simulate for each size of the scene. It is large enough to reach a steady state.
     pub fields: u64,
 }
 
-/// The closed form of a pipeline: an experiment without events.
+/// The analytic model of a pipeline: formulas that give the results of an experiment without simulated events.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm {
-    /// Function that returns the summary of an experiment.
+    /// Function that computes the summary of an experiment.
     pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
-    /// Functions that return estimates for an experiment.
+    /// Functions that compute estimates for an experiment.
     pub estimates: Estimates,
 }
 
@@ -73,21 +73,22 @@ pub struct ClosedForm {
 pub struct PipelineEntry {
     /// Name in experiment files and on the command line.
     pub name: &'static str,
-    /// Name of the family, which all variants of the pipeline share.
+    /// Name of the family. All variants of the pipeline have the same family.
     pub family: &'static str,
-    /// Description with the place of publication, in a line.
+    /// Description in one line, with the publication.
     pub about: &'static str,
-    /// Preset of the machine on which the papers ran the pipeline, or could have run it.
+    /// Preset of a machine on which the papers ran the pipeline, or on which the pipeline could have run.
     pub preset: &'static str,
-    /// Keys of the pipeline, with values, help and ranges.
+    /// Settings of the pipeline (keys), with allowed values and help texts.
     pub keys: &'static [Key],
-    /// Function that builds the pipeline from its settings. Keys that are not set have the values of the papers.
+    /// Function that builds the pipeline from its settings. Settings that the user did not change have the values from
+    /// the papers.
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-    /// Function that returns the criterion for the largest scene, for the given settings.
+    /// Function that returns the criterion for the largest scene, given the settings.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
-    /// Tables of the firmware's numbers. Each table has a name that begins the paths of its parameters, such as `jitp`.
+    /// Timing tables of the firmware. The name of a table, such as `jitp`, begins the paths of its parameters.
     pub tables: &'static [NamedTable],
-    /// Closed form, or `None` if the pipeline has none.
+    /// Analytic model of the pipeline, or `None` if it has none.
     pub closed_form: Option<ClosedForm>,
     /// True if the command `compare` has a row for the pipeline.
     pub compared: bool,
@@ -98,7 +99,7 @@ pub struct PipelineEntry {
 pub struct DisplayEntry {
     /// Name in experiment files and on the command line.
     pub name: &'static str,
-    /// Function that returns the configuration from the papers.
+    /// Function that returns the display's configuration with the values from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,
 }
 
@@ -110,7 +111,7 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// Creates a registry with the given pipelines and displays. More can be added later.
+    /// Creates a registry with the given pipelines and displays. More entries can be added later.
     #[must_use]
     pub const fn with(pipelines: Vec<PipelineEntry>, displays: Vec<DisplayEntry>) -> Self {
         Self { pipelines, displays }
@@ -126,7 +127,7 @@ impl Registry {
         config
     }
 
-    /// Adds a pipeline. A pipeline with the same name is replaced.
+    /// Adds a pipeline. An existing pipeline with the same name is replaced.
     pub fn add(&mut self, entry: PipelineEntry) {
         match self.pipelines.iter_mut().find(|known| known.name == entry.name) {
             Some(known) => *known = entry,
@@ -134,7 +135,7 @@ impl Registry {
         }
     }
 
-    /// Adds a display. A display with the same name is replaced.
+    /// Adds a display. An existing display with the same name is replaced.
     pub fn add_display(&mut self, entry: DisplayEntry) {
         match self.displays.iter_mut().find(|known| known.name == entry.name) {
             Some(known) => *known = entry,
@@ -142,7 +143,7 @@ impl Registry {
         }
     }
 
-    /// Sets the closed form of all pipelines of a family.
+    /// Sets the analytic model for all pipelines of a family.
     pub fn closed_form(&mut self, family: &str, form: ClosedForm) {
         let of_family = self.pipelines.iter_mut().filter(|entry| entry.family == family);
         of_family.for_each(|entry| entry.closed_form = Some(form));
@@ -160,27 +161,27 @@ impl Registry {
         &self.displays
     }
 
-    /// Returns the pipeline with a name.
+    /// Returns the pipeline with the given name.
     ///
     /// # Errors
     ///
-    /// The nearest valid name, if no pipeline has the name.
+    /// Returns the most similar valid name if no pipeline has the name.
     pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, &'static str> {
         let found = self.pipelines.iter().find(|entry| entry.name == name);
         found.ok_or_else(|| nearest(name, self.pipelines.iter().map(|entry| entry.name)).unwrap_or_default())
     }
 
-    /// Returns the display with a name.
+    /// Returns the display with the given name.
     ///
     /// # Errors
     ///
-    /// The nearest valid name, if no display has the name.
+    /// Returns the most similar valid name if no display has the name.
     pub fn display(&self, name: &str) -> Result<&DisplayEntry, &'static str> {
         let found = self.displays.iter().find(|entry| entry.name == name);
         found.ok_or_else(|| nearest(name, self.displays.iter().map(|entry| entry.name)).unwrap_or_default())
     }
 
-    /// Returns the keys of all pipelines, each once, with the families that have the key.
+    /// Returns the settings (keys) of all pipelines, each once, with the families that have the setting.
     #[must_use]
     pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();

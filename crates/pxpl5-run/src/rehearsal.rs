@@ -1,27 +1,27 @@
-//! Result of a dry run without prediction: the instants that views are drawn for.
+//! Result of a dry run without prediction: the instants for which views are drawn.
 
 use crate::head::Head;
 use crate::instants::Instants;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 
-/// Instants that views are drawn for, as found by a dry run without prediction.
+/// Instants for which views are drawn, found by a dry run without prediction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeenTimes {
-    /// Instant of each view that was shown, by view number.
+    /// Instant for which each shown view is drawn, by view number.
     aimed_at: Instants,
-    /// Mean time from the sample of a view to its instant, in picoseconds.
+    /// Mean time from the sample of a view to the instant for which it is drawn, in picoseconds.
     mean_lead_ps: u64,
 }
 
 impl SeenTimes {
-    /// Creates the result from the instants of the views that were shown, and the mean time in picoseconds from a
-    /// view's sample to its instant.
+    /// Creates the result from the instants for which shown views are drawn. `mean_lead_ps` is the mean time from a
+    /// view's sample to this instant, in picoseconds.
     pub(crate) const fn new(aimed_at: Instants, mean_lead_ps: u64) -> Self {
         Self { aimed_at, mean_lead_ps }
     }
 
-    /// Returns the instant that a view is drawn for. For a view that the dry run did not show, the instant is the
+    /// Returns the instant for which a view is drawn. For a view that the dry run did not show, the result is the
     /// sample time plus the mean lead.
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
@@ -40,9 +40,10 @@ pub struct DryRun {
 }
 
 impl DryRun {
-    /// Returns the head with a tuned predictor. Positions are tuned for the interval of pictures. Orientations are
-    /// tuned for the interval of latched orientations, if the display latches them. Returns `None` if the dry run found
-    /// no interval.
+    /// Returns the head with a tuned predictor. Returns `None` if the dry run found no prediction interval.
+    ///
+    /// The parameters for positions are tuned for the interval of pictures. The parameters for orientations are tuned
+    /// for the interval of latched orientations, if the display latches orientations.
     pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
         let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
         match self.turn_interval_ps {

@@ -13,8 +13,8 @@ use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Step, in picoseconds, to which the tuning interval of a predictor is rounded: one millisecond. A finer step changes
-/// the numbers of a filter by less than one per cent.
+/// Step, in picoseconds, to which the prediction interval for tuning is rounded: one millisecond. A finer step changes
+/// the parameters of a filter by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
@@ -22,22 +22,22 @@ const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
-    /// Views that later pictures may show too.
+    /// Views that later pictures may also show.
     going_on: BTreeMap<ViewNumber, ShownView>,
     aimed_at: Instants,
     leads: Mean,
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// Picture whose successor is not known yet.
+    /// Last picture, whose successor is not known yet.
     waiting: Option<PictureTimes>,
 }
 
-/// Time span in which a view is shown, over all pictures of the view.
+/// Time span in which a view is shown, over all pictures that show the view.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
     shown: LightTimes,
-    /// True if a picture of the view was complete and came after the warm-up.
+    /// True if a complete picture showed the view after start-up.
     is_complete: bool,
 }
 
@@ -85,7 +85,7 @@ impl StreamingObserver for DryRunObserver {
 }
 
 impl DryRunObserver {
-    /// Returns the results so far.
+    /// Returns the results of the dry run so far.
     pub(crate) fn rehearsed(self) -> DryRun {
         DryRun {
             rehearsal: SeenTimes::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
@@ -94,9 +94,10 @@ impl DryRunObserver {
         }
     }
 
-    /// Returns the pictures, each with the picture that replaces it. For a display with several memories, only the
-    /// first memory is timed, because it holds the structures that must be drawn most often. The last picture of this
-    /// memory waits until the picture that replaces it is known.
+    /// Returns the pictures, each with the picture that replaces it.
+    ///
+    /// For a display with several memories, only the first memory is timed. It holds the structures that must be drawn
+    /// most often. The last picture of this memory is held back until its successor is known.
     fn timed(&mut self, settled: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
         // Leave out the updates of all memories except the first.
@@ -123,7 +124,7 @@ impl DryRunObserver {
     }
 
     /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
-    /// the newest one too.
+    /// the newest view too.
     fn end_views(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
@@ -134,8 +135,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Finishes a view. Firmware that itself knows when views are seen needs no instants, and may show views in another
-    /// order than that of their numbers.
+    /// Finishes a view. Firmware that knows when views are seen needs no instants from the dry run. Such firmware may
+    /// show views out of the order of their numbers.
     fn end_view(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = settled.aim.instant(&shown);
@@ -151,8 +152,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the middle pixel of each field: from the measurement of an orientation to the
-    /// instant that it was predicted for.
+    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of an
+    /// orientation to the instant for which it was predicted.
     fn take_turns(&mut self, settled: &FinalResults<'_>, head: &HeadViews) {
         let display = settled.record.display();
         let Some((latched, surface)) = OrientationTiming::of_run(settled).zip(display.surfaces().first()) else {

@@ -1,11 +1,11 @@
-//! Arrival times of a tracker's reports at the host. The times do not depend on the reports' contents, so they are
-//! known in advance even for an interactive head.
+//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so they
+//! are known in advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
 use tracking::tracker::TrackerReport;
 
-/// Times of a report, without its content.
+/// Arrival and measurement times of a report, without its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Coming {
     /// Arrival time at the host.
@@ -26,8 +26,10 @@ impl Coming {
     }
 }
 
-/// Times of the reports of a run. Only requested reports that have not been discarded are in memory, so memory does not
-/// depend on the length of the run.
+/// Times of the reports of a run.
+///
+/// Only reports that were requested and not discarded are in memory. So memory does not depend on the length of the
+/// run.
 pub(crate) struct ReportSchedule {
     arrivals: Arrivals,
     known: VecDeque<Coming>,
@@ -38,27 +40,28 @@ impl ReportSchedule {
         Self { arrivals, known: VecDeque::new() }
     }
 
-    /// Returns the first report at an instant or later, or `None` if the run has none.
+    /// Returns the first report that arrives at an instant or later. Returns `None` if no such report exists.
     pub(crate) fn from(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let earlier = self.known.partition_point(|coming| coming.arrives < instant);
         self.known.get(earlier).copied()
     }
 
-    /// Returns the first report after an instant, or `None` if the run has none.
+    /// Returns the first report that arrives after an instant. Returns `None` if no such report exists.
     pub(crate) fn after(&mut self, instant: Time) -> Option<Coming> {
         self.from(Time(instant.0.saturating_add(1)))
     }
 
-    /// Returns the last report that had arrived by an instant, or `None` before the first.
+    /// Returns the last report that had arrived by an instant, or `None` before the first report.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards reports that no question about this instant or later needs. The last report before the instant stays,
-    /// and so do reports that arrived together with it.
+    /// Discards reports that are not needed for this instant or later ones.
+    ///
+    /// The last report before the instant stays, and so do reports that arrived at the same time.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);

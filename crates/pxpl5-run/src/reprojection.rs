@@ -1,59 +1,62 @@
-//! A device between frame buffer and eye that moves the last picture to where the head is now.
+//! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How a picture is moved.
+/// The method by which a device moves a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Warp {
-    /// Shifted as a whole by yaw and pitch, exact in the middle of the picture.
+    /// The whole picture is shifted by yaw and pitch. The result is exact only in the middle of the picture.
     Shift,
-    /// Turned about the eye, a homography: today's timewarp. Exact for all turns; what a step changes remains.
+    /// The picture is rotated about the eye by a homography, like today's timewarp. The result is exact for rotations
+    /// of the head. Translations remain uncorrected.
     Rotation,
-    /// Moved pixel by pixel with its depth: exact for turns and steps, except for what the picture does not hold.
+    /// Each pixel is moved by its depth. The result is exact for rotations and translations, except where the picture
+    /// lacks the content.
     Depth,
 }
 
-/// How often the newest pose is taken.
+/// The part of a scan for which the device takes one newest pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Every {
-    /// Once for all of a period of the display.
+    /// One pose for each display period.
     Field,
-    /// Once for each strip of 128 lines, or of columns where the scan goes sideways.
+    /// One pose for each strip of 128 lines. If the scan goes sideways, a strip has 128 columns.
     Strip,
-    /// Once for each line, or column: beam racing.
+    /// One pose for each line or column: beam racing.
     Line,
 }
 
 /// A device that reprojects pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Reprojection {
-    /// How a picture is moved.
+    /// The method by which the device moves a picture.
     pub by: Warp,
-    /// How often the newest pose is taken.
+    /// The part of a scan for which the device takes one newest pose.
     pub every: Every,
-    /// Time from the pose to the first light of what it moves, microseconds.
+    /// Time from taking a pose until the first pixel moved to this pose is lit, in microseconds.
     pub latency_us: u64,
 }
 
 impl Warp {
-    /// All, by their names in experiment files.
+    /// All methods, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("shift", Self::Shift), ("rotation", Self::Rotation), ("depth", Self::Depth)];
 }
 
 impl Every {
-    /// All, by their names in experiment files.
+    /// All parts of a scan, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("strip", Self::Strip), ("line", Self::Line)];
 
-    /// Lines of a strip: those of a region.
+    /// Number of lines in a strip: as many as in a region.
     pub const STRIP: u32 = 128;
 
-    /// Returns the latency of a device where none is given, microseconds.
+    /// Returns the default latency of a device, in microseconds (assumed).
     ///
-    /// Assumed. 2,000 a field: a graphics processor begins so long before the retrace (1,000 to 4,000). 500 a strip and 100 a line: a
-    /// pipeline beside the scan that holds a few lines (64 to 1,000).
+    /// For poses per field, the latency is 2,000: a graphics processor begins this long before the retrace (1,000 to
+    /// 4,000). For poses per strip it is 500, and for poses per line 100: a pipeline beside the scan holds a few lines
+    /// (64 to 1,000).
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {
@@ -65,17 +68,19 @@ impl Every {
 }
 
 impl Reprojection {
-    /// The least and the greatest latency, microseconds.
+    /// The smallest and the largest valid latency, in microseconds.
     pub const LATENCY_US: (u64, u64) = (0, 100_000);
 
-    /// A device with the usual latency.
+    /// Creates a device with the default latency.
     #[must_use]
     pub const fn new(by: Warp, every: Every) -> Self {
         Self { by, every, latency_us: every.usual_latency_us() }
     }
 
-    /// The raster offset of VDRT (Breglia 1981): a shift whose pose is taken at the retrace, once a field. The rates of yaw and pitch carry it
-    /// on during the field, and the picture counts as drawn beyond the edge of the screen.
+    /// The raster offset of VDRT (Breglia 1981): a shift whose pose is taken at the retrace, once per field.
+    ///
+    /// The rates of yaw and pitch continue the shift during the field. The picture counts as drawn beyond the edge of
+    /// the screen.
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 

@@ -1,19 +1,20 @@
-//! The window of a run over which all its results are computed: latencies, pictures due, errors and rates.
+//! The result window: the display periods over which latencies, pictures due, errors and rates are computed.
 //!
 //! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
-//! were begun. The window begins after start-up, with the periods of the next picture that is due. If a due picture in
-//! the first half of the run was not shown, the window begins with the first such picture, so no failure is left out.
-//! Earlier pictures may have profited from queues that were still empty. Pictures of start-up never have a latency or
-//! an error.
+//! were begun. The window begins after start-up, with the periods of the next picture that is due.
 //!
-//! The window ends with the last period that was over, or one period earlier if no picture is ever due.
+//! If a due picture in the first half of the run was not shown, the window begins with the first such picture. So no
+//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of start-up
+//! never have a latency or an error.
+//!
+//! The window ends with the last complete period, or one period earlier if no picture is ever due.
 
 use crate::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Number of display periods at the start of a run that are not evaluated. In these periods, the first views are in
-/// progress, and the first pictures were ordered too late (assumed).
+/// Number of display periods at the start of a run that are not evaluated (assumed). In these periods, the first views
+/// are still being drawn, and the first pictures were requested too late.
 pub const WARM_UP_PERIODS: u64 = 8;
 
 /// Rule for the window of a run, in words for readers of a report.
@@ -27,7 +28,7 @@ pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates a
 pub struct ResultWindow {
     /// First period of the window.
     pub first_period: PeriodNumber,
-    /// Last period of the window. This period is part of the window.
+    /// Last period of the window, inclusive.
     pub last_period: PeriodNumber,
     /// Period of the first picture after start-up. `None` if the run shows no picture after start-up.
     #[serde(skip)]
@@ -35,11 +36,12 @@ pub struct ResultWindow {
 }
 
 impl ResultWindow {
-    /// Returns the window of a run that has ended. `reached` is the first period that was not simulated to its end.
+    /// Returns the window of a run that has ended. Returns `None` if no period remains after start-up, or if the
+    /// remaining periods are too few for a due picture.
     ///
-    /// `every` is the number of periods between pictures that are due, or `None` if no picture is ever due. `planned`
-    /// is the first period after the requested length of the run, and defines the first half of the run. Returns `None`
-    /// if no period remains after start-up, or if the rest is too short for a due picture.
+    /// `reached` is the first period that was not simulated to its end. `every` is the number of periods from one due
+    /// picture to the next, or `None` if no picture is ever due. `planned` is the first period after the requested
+    /// length of the run, and defines the first half of the run.
     pub(crate) fn of(
         ends: &PictureResults,
         every: Option<u64>,
@@ -57,8 +59,8 @@ impl ResultWindow {
         (whole > 0).then_some(Self { last_period, ..begun })
     }
 
-    /// Returns the window of a run that is still going on. All pictures in the periods before `known` must be known.
-    /// The window ends with the requested end of the run.
+    /// Returns the window of a run that has not ended. All pictures in the periods before `known` must be known. The
+    /// window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
         // Start-up may take at most the first half of the requested run.
@@ -76,7 +78,8 @@ impl ResultWindow {
         Self { first_period: PeriodNumber(first), last_period, steady_from }
     }
 
-    /// Returns the window without the whole intervals between due pictures that begin before a period; `None` if nothing is left.
+    /// Returns the window without all intervals between due pictures that begin before the period `from`. Returns
+    /// `None` if nothing remains.
     pub(crate) fn not_before(self, from: Option<PeriodNumber>, every: Option<u64>) -> Option<Self> {
         let every = every.unwrap_or(1).max(1);
         let later = from.map_or(0, |from| from.0.saturating_sub(self.first_period.0).div_ceil(every) * every);
@@ -90,7 +93,7 @@ impl ResultWindow {
         (self.first_period..=self.last_period).contains(&period)
     }
 
-    /// Returns true if a picture that is shown from `period` on lies in the window and after start-up.
+    /// Returns true if a picture that is first shown in `period` lies in the window and after start-up.
     #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
@@ -103,8 +106,10 @@ impl ResultWindow {
     }
 }
 
-/// Returns the period in which the first counted picture is due. If a picture that is due between `start` and `end` was
-/// not shown, the first such picture is taken. Otherwise, the first one that is due at or after `steady` is taken.
+/// Returns the period in which the first counted picture is due.
+///
+/// This is the first picture due between `start` and `end` that was not shown. If all were shown, it is the first
+/// picture due at or after `steady`.
 fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);

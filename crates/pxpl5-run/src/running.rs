@@ -9,8 +9,8 @@ use pxpl5_machine::Machine;
 use pxpl5_wire::PeriodNumber;
 
 impl Experiment {
-    /// Builds the machine, loads the pipeline's programs and switches the machine on. With prediction, a dry run comes
-    /// first.
+    /// Builds the machine, loads the pipeline's programs and starts the machine. If the head's pose is predicted, a dry
+    /// run comes first.
     ///
     /// # Errors
     ///
@@ -23,8 +23,8 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// As [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far if the run ends early.
-    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of the warm-up were shown.
+    /// Like [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far if the run ends early.
+    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of start-up were shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }
@@ -34,7 +34,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`].
+    /// Like [`Experiment::run`].
     pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
         self.run_stopping(&[], |field, _| {
             progress(field.since(PeriodNumber::FIRST), self.fields);
@@ -42,13 +42,14 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, and at further fields for
-    /// progress. `at` receives the field and the machine before any event of that field. An error from `at` ends the
-    /// run.
+    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, and at further fields for progress
+    /// reports.
+    ///
+    /// `at` receives the field and the machine before any event of this field. An error from `at` ends the run.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`], and any error that `at` returns.
+    /// Like [`Experiment::run`], and any error that `at` returns.
     pub fn run_stopping(
         &self,
         stops: &[PeriodNumber],
@@ -57,16 +58,15 @@ impl Experiment {
         self.perform(self.prepare()?, stops, at)
     }
 
-    /// Builds the machine, switches it on and returns a stepper, which runs the experiment in pieces. With prediction,
-    /// a dry run comes first. [`Stepper::finish`] returns the same result as [`Experiment::run`].
+    /// Builds and starts the machine, and returns a stepper, which runs the experiment in steps.
     ///
-    /// With [`Experiment::record_traffic`], a stepper can also read the words in FIFOs and pixel memory.
-    ///
-    /// With [`Experiment::record_traffic`] more can be seen: the words in FIFOs, and pixel memory.
+    /// If the head's pose is predicted, a dry run comes first. [`Stepper::finish`] returns the same result as
+    /// [`Experiment::run`]. With [`Experiment::record_traffic`], a stepper can also read the words in FIFOs and pixel
+    /// memory.
     ///
     /// # Errors
     ///
-    /// As [`Experiment::build`].
+    /// Like [`Experiment::build`].
     pub fn stepper(&self) -> Result<Stepper, ExperimentError> {
         Stepper::begin(self, self.prepare()?)
     }

@@ -3,15 +3,18 @@
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// Largest number of samples of each kind in a run that keeps statistics only. The samples of one kind take 512 KiB. A
-/// sample is a field under Slats and a picture under any other pipeline.
+/// Largest number of samples of each kind in a run that keeps only statistics. The samples of one kind take 512 KiB.
+///
+/// Under Slats, one sample belongs to a field. Under any other pipeline, it belongs to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;
 
-/// Numbers in order of arrival, with a limit. Up to the limit, all numbers are kept, and the statistics equal those of
-/// [`Statistics::of`] bit for bit. Beyond the limit, only the first numbers are kept. The statistics then come from
-/// sums with twice the precision of `f64`, and differ from the exact ones in the last digits at most.
+/// A collection of numbers in order of arrival, with a limit.
 ///
-/// As a slice, the samples are the kept numbers.
+/// Up to the limit, all numbers are kept, and the statistics equal those of [`Statistics::of`] bit for bit. Beyond the
+/// limit, only the first numbers are kept. The statistics are then computed from sums with twice the precision of
+/// `f64`. They differ from the exact statistics at most in the last digits.
+///
+/// As a slice, the collection contains the kept numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
     kept: Vec<f64>,
@@ -99,8 +102,8 @@ impl IntoIterator for Samples {
     }
 }
 
-/// Sums of numbers and of their squares, both relative to the first number. The offset keeps precision when all numbers
-/// are similar.
+/// Sum of the differences of all numbers from the first number, and sum of their squares. Using differences keeps
+/// precision when all numbers are similar.
 #[derive(Clone, Debug, PartialEq)]
 struct Moments {
     n: u64,

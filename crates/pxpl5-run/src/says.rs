@@ -1,4 +1,4 @@
-//! Descriptions of the state of boards in words, for the debugger and the live page.
+//! Texts that describe the state of boards, for the debugger and the live page.
 
 use crate::stepper::Stepper;
 use pxpl5_gp::{GpSnapshot, Priority, ProgramSnapshot};
@@ -29,7 +29,8 @@ impl Stepper {
         }
     }
 
-    /// Returns details of a processor, one line each, with the kind of detail first. Other boards have none.
+    /// Returns details of a processor, one per line. Each line begins with the kind of the detail. Other boards have no
+    /// details.
     #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
         let Some(look) = self.processor(board) else { return Vec::new() };
@@ -54,7 +55,7 @@ impl Stepper {
         lines
     }
 
-    /// Returns the last line of the first display's first surface that has begun to light in the present period.
+    /// Returns the last line of the first display's first surface that has begun to be lit in the current period.
     /// Returns `None` before the first line.
     #[must_use]
     pub fn beam_line(&self) -> Option<u32> {
@@ -64,8 +65,9 @@ impl Stepper {
         (0..lines).rev().find(lit)
     }
 
-    /// Returns the fields of a pixel's memory in a renderer's array, after all commands that have started. Returns
-    /// `None` under the same conditions as [`Stepper::array`], and for a position outside the array.
+    /// Returns the fields of one pixel's memory in a renderer's array, after all commands that have started.
+    ///
+    /// Returns `None` under the same conditions as [`Stepper::array`], and for a position outside the array.
     #[must_use]
     pub fn pixel_fields(&self, renderer: usize, x: u32, y: u32) -> Option<Vec<PixelField>> {
         if x >= REGION_SIZE || y >= REGION_SIZE {
@@ -114,21 +116,21 @@ impl Stepper {
 pub struct PixelField {
     /// Name of the field in the layout.
     pub name: String,
-    /// First bit of the field, among the 208 bits of a pixel.
+    /// Index of the field's first bit, among the 208 bits of a pixel.
     pub first: u32,
     /// Width of the field in bits.
     pub width: u32,
-    /// Value of the field. The first bit is the lowest.
+    /// Value of the field. The field's first bit is the least significant bit.
     pub value: u128,
 }
 
-/// Returns the bit of a pixel in a plane. `x` is the column and `y` the row of the array.
+/// Returns one bit of a pixel, from a bit plane. `x` is the column and `y` the row of the array.
 #[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-/// Returns a description of a processor's programs and of the messages that wait.
+/// Returns a description of a processor's programs and of the messages that wait for them.
 fn processor_line(look: &GpSnapshot) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {

@@ -1,4 +1,4 @@
-//! The part of a run that has been simulated, as timelines and tables need it.
+//! The simulated part of a run, as input for timelines and tables.
 
 use crate::experiment::Experiment;
 use crate::latency::{LatencyParts, parts};
@@ -29,7 +29,7 @@ impl Outcome {
 }
 
 impl Stepper {
-    /// Returns the observations up to now, with the pictures that have been shown and are still [kept](crate::Keep).
+    /// Returns the observations up to now, with the shown pictures whose records are in memory ([`Keep`](crate::Keep)).
     #[must_use]
     pub fn so_far(&self) -> SoFar<'_> {
         let pictures = self.experiment().pipeline().pictures(self.record(), self.now());
@@ -44,7 +44,7 @@ impl SoFar<'_> {
         self.record
     }
 
-    /// Returns the marks of firmware, the arrivals at displays and the swaps, in order of time.
+    /// Returns the time stamps of stages, the arrivals at displays and the swaps, each in order of time.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
@@ -62,7 +62,7 @@ impl SoFar<'_> {
         self.experiment.pipeline().as_ref()
     }
 
-    /// Returns all stages of all pictures. The times of COPY are those at the displays.
+    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
@@ -86,7 +86,8 @@ impl SoFar<'_> {
         Span::from_ns(self.experiment.config().gp.message_ns)
     }
 
-    /// Returns the latency parts of the last complete pictures, at most `most` of them, the newest last.
+    /// Returns the latency parts of the last complete pictures. The list has at most `most` pictures, with the newest
+    /// last.
     #[must_use]
     pub fn last_latencies(&self, most: usize) -> Vec<LatencyParts> {
         let stages = self.stages();

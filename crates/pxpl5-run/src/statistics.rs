@@ -3,8 +3,10 @@
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
-/// Statistics of a list of numbers: count, mean, sample standard deviation, least and greatest. An empty list has NaN
-/// for all but the count. A single number has NaN as its deviation. JSON shows NaN as null.
+/// Statistics of a list of numbers: count, mean, sample standard deviation, minimum and maximum.
+///
+/// For an empty list, all values but the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
+/// null.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
     /// Count of the numbers.
@@ -19,8 +21,8 @@ pub struct Statistics {
     pub max: f64,
 }
 
-/// Slightly more than a picosecond, in milliseconds. Times are whole picoseconds, so equal times differ by less than
-/// this value after rounding.
+/// Slightly more than one picosecond, in milliseconds. Times are whole picoseconds, so after rounding, equal times
+/// differ by less than this value.
 const PICOSECOND_MS: f64 = 1.001e-9;
 
 /// Serializes the rounded form that [`Statistics::told`] returns.
@@ -38,8 +40,9 @@ impl Serialize for Statistics {
 }
 
 impl Statistics {
-    /// Returns the statistics as reports and tables show them, without effects of rounding. If all numbers lie within a
-    /// picosecond, the deviation is 0. The mean lies between the least and the greatest number.
+    /// Returns the statistics for reports and tables, with effects of rounding removed.
+    ///
+    /// If all numbers lie within a picosecond, the deviation is 0. The mean lies between the minimum and the maximum.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {
@@ -51,7 +54,7 @@ impl Statistics {
         Self { sd, mean: self.mean.max(self.min).min(self.max), ..self }
     }
 
-    /// Computes the statistics of numbers in any order. None of them may be NaN.
+    /// Computes the statistics of numbers in any order. No number must be NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
@@ -106,7 +109,8 @@ mod tests {
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
     }
 
-    /// By the formula, three times 0.1 has a mean of 0.10000000000000002 and a deviation of 1.7e-17.
+    /// Without removal of rounding effects, three times 0.1 has a mean of 0.10000000000000002 and a deviation of
+    /// 1.7e-17.
     #[test]
     fn what_does_not_vary_is_told_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {

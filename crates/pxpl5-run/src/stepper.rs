@@ -1,4 +1,4 @@
-//! Runs an experiment in pieces. Between two pieces, the state of the machine can be read.
+//! Runs an experiment in steps. Between two steps, the state of the machine can be read.
 
 use crate::assembled::Assembled;
 use crate::error::ExperimentError;
@@ -20,12 +20,12 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
 
-/// Reason for which a piece of a run ended.
+/// Reason for which a step of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pause {
-    /// The given instant has come, or the awaited event has happened.
+    /// The run reached the given instant, or the awaited event happened.
     Reached,
-    /// Code has reached one or more breakpoints. The list has an entry for each.
+    /// Executed code reached one or more breakpoints. The list has one entry for each breakpoint.
     Breakpoints(Vec<BreakpointHit>),
     /// All fields of the experiment have been simulated.
     End,
@@ -33,10 +33,10 @@ pub enum Pause {
     Failed(RunError),
 }
 
-/// A running experiment that advances on request, for example by a field, a line or an event, or up to a condition.
-/// [`Experiment::run`] is a stepper that runs to the end.
+/// A running experiment that advances on request, for example by a field, a line or an event, or until a condition is
+/// met. [`Experiment::run`] is a stepper that runs to the end.
 ///
-/// The division into pieces and the reading of state change no result: trace, pictures and report stay the same.
+/// Dividing a run into steps and reading its state change no result: trace, pictures and report stay the same.
 #[derive(Debug)]
 pub struct Stepper {
     experiment: Experiment,
@@ -51,7 +51,7 @@ pub struct Stepper {
 
 impl Stepper {
     pub(crate) fn begin(experiment: &Experiment, preparation: Preparation) -> Result<Self, ExperimentError> {
-        // The time on the host includes the building of the machine.
+        // The real time on the host includes the time for building the machine.
         let begun_s = experiment.host.seconds();
         let run = experiment.assemble(preparation.clone())?;
         let window = Window::new(experiment, run.machine.record());
@@ -67,7 +67,8 @@ impl Stepper {
         })
     }
 
-    /// Runs up to an instant. Events at this instant itself stay pending. For an instant in the past, nothing happens.
+    /// Runs up to an instant. Events at exactly this instant stay pending. If the instant is in the past, nothing
+    /// happens.
     pub fn run_to(&mut self, time: Time) -> Pause {
         let target = time.min(self.end());
         // Breakpoints must be checked after every event. Without any, the machine runs in chunks.
@@ -87,7 +88,7 @@ impl Stepper {
         self.reached(time)
     }
 
-    /// Handles events one after the other until `is_it` returns true for an event. Stops at `limit` at the latest.
+    /// Handles events one after the other until `is_it` returns true for an event, or until the instant `limit`.
     pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &EventDescription) -> bool) -> Pause {
         let target = limit.min(self.end());
         loop {
@@ -119,7 +120,7 @@ impl Stepper {
         }
     }
 
-    /// Handles one event. [`Stepper::last`] returns the event.
+    /// Handles one event. [`Stepper::last`] then returns a description of this event.
     pub fn step_event(&mut self) -> Pause {
         self.run_until(self.end(), |_, _| true)
     }
@@ -129,19 +130,20 @@ impl Stepper {
         self.run_until(self.end(), |_, happening| happening.board == board)
     }
 
-    /// Runs until the next line of the first display's first surface begins to light. After the last line of a period,
+    /// Runs until the next line of the first display's first surface begins to be lit. After the last line of a period,
     /// runs to the next period.
     pub fn step_line(&mut self) -> Pause {
         self.run_to(self.next_line())
     }
 
-    /// Runs to the next tick of the first display, which is the beginning of a field.
+    /// Runs to the next tick of the first display, at which the next period begins. For NTSC, a period is one field.
     pub fn step_period(&mut self) -> Pause {
         self.run_to(self.record().tick(self.period().next()))
     }
 
-    /// Sets the code addresses at which the run stops, in place of all earlier addresses. Only a run at
-    /// [`Level::Cycle`](crate::Level::Cycle) executes code and can stop at an address.
+    /// Sets the code addresses at which the run stops, and removes all earlier addresses.
+    ///
+    /// Only a run at [`Level::Cycle`](crate::Level::Cycle) executes code and can stop at an address.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.run.machine.break_at(&addresses);
         self.breakpoints = addresses;
@@ -151,7 +153,7 @@ impl Stepper {
     ///
     /// # Errors
     ///
-    /// As [`Experiment::run`].
+    /// Like [`Experiment::run`].
     pub fn finish(mut self) -> Result<Outcome, ExperimentError> {
         self.break_at(BTreeSet::new());
         while self.failure().is_none() && self.now < self.end() {
@@ -179,7 +181,7 @@ impl Stepper {
         }
     }
 
-    /// Returns the simulated instant at which the last piece of the run ended.
+    /// Returns the simulated instant at which the last step ended.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
@@ -197,7 +199,7 @@ impl Stepper {
         self.record().display().period_at(self.now)
     }
 
-    /// Returns the instant at which the next line of the first surface begins to light. After the last line, returns
+    /// Returns the instant at which the next line of the first surface begins to be lit. After the last line, returns
     /// the beginning of the next period.
     #[must_use]
     pub fn next_line(&self) -> Time {
@@ -208,7 +210,7 @@ impl Stepper {
         begins.filter(|at| *at > self.now).min().unwrap_or_else(|| display.tick(period.next()))
     }
 
-    /// Returns the last event, if the last piece of the run ended with an event.
+    /// Returns the last event, if the last step ended with an event.
     #[must_use]
     pub const fn last(&self) -> Option<EventDescription> {
         self.last
@@ -230,7 +232,7 @@ impl Stepper {
         &mut self.run.machine
     }
 
-    /// Returns the observations so far. The hash of the record is that of the trace up to now.
+    /// Returns the observations so far. The hash in the record covers the trace up to now.
     #[must_use]
     pub const fn record(&self) -> &Record {
         self.run.machine.record()
@@ -255,8 +257,9 @@ impl Stepper {
         Some(self.record().renderers().get(number)?.look(self.now))
     }
 
-    /// Returns the pixel array of a renderer after all commands that have started. Returns `None` without [recorded
-    /// traffic](Experiment::record_traffic), and if no pixels are computed.
+    /// Returns the pixel array of a renderer after all commands that have started.
+    ///
+    /// Returns `None` unless [traffic is recorded](Experiment::record_traffic) and pixels are computed.
     #[must_use]
     pub fn array(&self, renderer: usize) -> Option<Lanes> {
         self.record().renderers().get(renderer)?.array_at(self.now)
@@ -268,8 +271,8 @@ impl Stepper {
         self.record().ring().channel_snapshots(self.now).collect()
     }
 
-    /// Returns the picture on a surface as the viewer sees it now: the lines that the beam has drawn, above the lines
-    /// that remain from before.
+    /// Returns the picture that the viewer of a surface sees now. Lines that the beam has already drawn are new. The
+    /// lines below remain from the previous picture.
     #[must_use]
     pub fn seen(&self, surface: SurfaceId) -> Option<RgbImage> {
         let mut left = surface.index();
@@ -283,13 +286,13 @@ impl Stepper {
         None
     }
 
-    /// Returns the ideal picture of a surface for the present state of the scene. See [`Outcome::ideal_picture`].
+    /// Returns the ideal picture of a surface for the current state of the scene. See [`Outcome::ideal_picture`].
     #[must_use]
     pub fn ideal_picture(&self, surface: SurfaceId) -> Option<IdealPicture> {
         ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }
 
-    /// Sets the present instant and adds all final results to the sums.
+    /// Sets the current instant and adds all results that can no longer change to the sums.
     fn advance_to(&mut self, now: Time) {
         self.now = now;
         self.last = None;
@@ -303,16 +306,20 @@ impl Stepper {
         if time > self.end() { Pause::End } else { Pause::Reached }
     }
 
-    /// Returns true if a machine at the end of the run may be in a deadlock. A pipeline that waits for a swap is at
-    /// rest until the next tick. In a long run, the machine itself detects a deadlock. A deadlock can be undetected
-    /// only in a short run, or after idle ticks at the end.
+    /// Returns true if a machine at the end of the run may be in a deadlock.
+    ///
+    /// A pipeline that waits for a swap has no pending work until the next tick. In a long run, the machine itself
+    /// detects a deadlock. A deadlock can remain undetected only in a short run, or after idle ticks at the end of a
+    /// run.
     fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long
     }
 
-    /// Returns a deadlock error if a machine that is at rest at the end of the run would never continue. The method
-    /// repeats the run with enough additional fields for the detection. The record of the original run stays as it is.
+    /// Returns a deadlock error if a machine without pending work at the end of the run would never continue.
+    ///
+    /// The method repeats the run with enough additional fields to detect a deadlock. The record of the original run
+    /// stays unchanged.
     fn deadlock(&self) -> Option<RunError> {
         let fields = self.experiment.fields + DEADLOCK_TICKS + 2;
         let longer = Experiment { fields, pixels: Pixels::Off, ..self.experiment.clone() };
@@ -335,8 +342,10 @@ fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
 }
 
-/// Estimates the number of fields until a picture after the warm-up is shown. The estimate assumes that pictures keep
-/// their mean interval. For a single picture, the interval is the time until this picture was shown.
+/// Estimates the number of fields until a picture after start-up is shown.
+///
+/// The estimate assumes that pictures keep their mean interval. For a single picture, the interval is the time until
+/// this picture was shown.
 fn needed_by_run(partial: &Outcome) -> Option<u64> {
     let pictures = partial.pictures();
     if !pictures.iter().any(PictureTimes::is_shown) {
@@ -356,11 +365,11 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     Some((field + 1).max(partial.fields() + 1))
 }
 
-/// Returns the number of pictures of a run, including periods that show old faces in a new direction.
+/// Returns the number of pictures of a run, including periods that show old cube faces in a new direction of the head.
 fn shown_in(outcome: &Outcome) -> u64 {
     outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
 }
 
-/// Length of a run, in fields, below which a deadlock may remain undetected.
+/// Number of fields below which a deadlock may remain undetected.
 const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
 const IDLE_TICKS: u64 = 2;

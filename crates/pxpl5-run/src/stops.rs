@@ -1,10 +1,10 @@
-//! Stops of a run, for progress reports and for user functions.
+//! Fields at which a run pauses, to report progress and to call functions that the caller supplies.
 
 use crate::experiment::Experiment;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 
-/// Number of fields between two progress reports. After so many fields, final results are added to the sums.
+/// Number of fields between two progress reports. After each such interval, final results are added to the sums.
 pub(crate) const PROGRESS_FIELDS: u64 = 60;
 
 impl Experiment {

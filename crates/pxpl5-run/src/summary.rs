@@ -4,32 +4,33 @@ use crate::due::DuePictures;
 use crate::samples::Samples;
 use crate::statistics::Statistics;
 
-/// Results of an experiment that all levels of modelling provide, over the pictures in the window of the run.
+/// Results of an experiment that all levels of modelling provide, over the pictures in the result window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Latency of every complete picture, as its pipeline defines latency, in milliseconds.
+    /// Latency of every complete picture, by the pipeline's definition, in milliseconds.
     pub latencies_ms: Samples,
-    /// Period of the display, in milliseconds. For NTSC, the period is a field.
+    /// Duration of a display period, in milliseconds. For NTSC, a period is a field.
     pub field_ms: f64,
-    /// Number of complete pictures shown a second, over the window of `due`. `None` if fewer than two were shown.
+    /// Number of complete pictures shown per second, over the window of `due`. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
-    /// Counts of the pictures that were due, by result. `None` if no picture was due.
+    /// Numbers of due pictures, by result. `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// Times from the start of an eye's TRANSFORM to the end of its COPY, in milliseconds. Empty if eyes have no
-    /// TRANSFORM and COPY of their own.
+    /// Times from the start of an eye's TRANSFORM to the end of its COPY, in milliseconds. Empty if the eyes share one
+    /// TRANSFORM or COPY.
     pub eye_latencies_ms: Samples,
     /// Times from the start of an eye's TRANSFORM to the retrace at which its picture is swapped in, in milliseconds.
-    /// Empty if eyes have no TRANSFORM of their own.
+    /// Empty if the eyes share one TRANSFORM.
     pub eye_swap_latencies_ms: Samples,
-    /// Times from the start of an eye's TRANSFORM to the swap, in retraces. The retrace of the swap counts.
+    /// Times from the start of an eye's TRANSFORM to the swap, counted in retraces. The retrace of the swap is
+    /// included.
     pub eye_retraces: Samples,
-    /// Port time of a region of 15,360 pixels, in microseconds. NaN if no region arrived.
+    /// Time for which a region of 15,360 pixels occupies its display port, in microseconds. NaN if no region arrived.
     pub region_copy_us: f64,
     /// Mean time from the first to the last word of a picture's first copy, in milliseconds. See
     /// [`Pipeline::copy_part`](crate::Pipeline::copy_part).
     pub first_copy_ms: f64,
-    /// Mean time from the first to the last word of a picture's second copy, in milliseconds. 0 if pictures have one
-    /// copy only. NaN without any picture.
+    /// Mean time from the first to the last word of a picture's second copy, in milliseconds. Zero if pictures have
+    /// only one copy. NaN if no picture was drawn.
     pub last_copy_ms: f64,
     /// Mean time from the start of a picture to the first word of its first copy, in milliseconds.
     pub copy_begins_ms: f64,
@@ -42,15 +43,15 @@ impl Summary {
         self.latencies_ms.statistics()
     }
 
-    /// Returns the statistics of the times from an eye's TRANSFORM to the swap, over both eyes, in milliseconds. The
-    /// statistics are empty if eyes have no TRANSFORM of their own.
+    /// Returns the statistics of the times from the start of an eye's TRANSFORM to the swap, over both eyes, in
+    /// milliseconds. The statistics are empty if the eyes share one TRANSFORM.
     #[must_use]
     pub fn eye_latency_ms(&self) -> Statistics {
         self.eye_swap_latencies_ms.statistics()
     }
 
-    /// Returns the statistics of the times from an eye's TRANSFORM to the swap, in retraces. The retrace of the swap
-    /// counts.
+    /// Returns the statistics of the times from the start of an eye's TRANSFORM to the swap, counted in retraces. The
+    /// retrace of the swap is included.
     #[must_use]
     pub fn eye_retraces(&self) -> Statistics {
         self.eye_retraces.statistics()
@@ -64,12 +65,12 @@ impl Summary {
     }
 }
 
-/// Returns the number of retraces in a latency that ends with a retrace. The last retrace counts. `field_ms` is the
-/// period of the display in milliseconds.
+/// Returns the number of retraces in a latency that ends with a retrace, including this last retrace. `field_ms` is the
+/// duration of a display period in milliseconds.
 #[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
-    /// Tolerance, in periods, that absorbs the rounding of the quotient. A latency of a whole number of periods must
-    /// give exactly this number.
+    /// Tolerance for the rounding of the quotient, in display periods. A latency of a whole number of periods must give
+    /// exactly this number.
     const ROUNDING: f64 = 1e-9;
     (latency_ms / field_ms - ROUNDING).ceil()
 }

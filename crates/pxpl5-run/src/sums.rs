@@ -1,4 +1,4 @@
-//! Streaming observers: they process the records of a run while it goes on, so that old records can be discarded.
+//! Streaming observers. They process the records of a run during the run, so that old records can be discarded.
 
 use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
@@ -12,42 +12,47 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Final results and records of a run that a streaming observer has not received before. After a run that keeps
-/// everything, one value holds the whole run.
+/// Results of a run that can no longer change, and that a streaming observer has not received before.
+///
+/// After a run that keeps everything, one value holds the whole run.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
-    /// Instant of a picture's display time for which its view is drawn, such as the middle or the first pixel.
+    /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
+    /// middle and the first pixel.
     pub aim: Aim,
     /// Number of periods of the first display that the run simulates.
     pub fields: u64,
-    /// Machine and kept records, including records of later pictures and periods.
+    /// The machine and its records in memory, including records of later pictures and periods.
     pub record: &'a Record,
-    /// Views of the tracked head that are kept, or `None` without a head.
+    /// Views of the tracked head that remain in memory. `None` without a head.
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: HmdConfig,
-    /// Requested updates of display memories that are kept.
+    /// Requested updates of display memories that remain in memory.
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
-    /// Final pictures, in the order in which they are shown.
+    /// Pictures whose results are final, in the order in which they are shown.
     pub pictures: &'a [PictureTimes],
-    /// Picture that is shown after all of `pictures`. `None` at the end of the run.
+    /// The next picture that is shown after all of `pictures`. `None` at the end of the run.
     pub next: Option<&'a PictureTimes>,
-    /// First period that is not final. Every picture that is shown, at least in part, before this period has been
-    /// handed over.
+    /// First period whose results are not final. The observer has received every picture that is shown before this
+    /// period, even in part.
     pub until: PeriodNumber,
-    /// Largest number of samples of a kind that are kept one by one: see [`Samples::keeping`](crate::Samples::keeping).
+    /// Largest number of samples of each kind that are kept individually: see
+    /// [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Window of the results, as far as it is known. The begin of the window may still move to a later period. Then all
-    /// data that was handed over before lies outside the window. `None` if the run has no window.
+    /// Currently known result window. `None` if the run has no window.
+    ///
+    /// The begin of the result window may still move to a later period. Then all data that the observer received before
+    /// lies outside the result window.
     pub window: Option<ResultWindow>,
 }
 
 impl FinalResults<'_> {
-    /// Returns the pictures that lie in the window.
+    /// Returns the pictures that lie in the result window.
     pub fn steady_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         let display = self.record.display();
         let window = self.window;
@@ -57,8 +62,8 @@ impl FinalResults<'_> {
         self.pictures.iter().filter(is_held)
     }
 
-    /// Returns the final periods of the window, from `next` on. `next` is the first period that was not handed over
-    /// before.
+    /// Returns the final periods of the result window, beginning with `next`. `next` is the first period that the
+    /// observer has not received.
     pub fn periods_from(&self, next: PeriodNumber) -> impl DoubleEndedIterator<Item = PeriodNumber> + Clone + use<> {
         let Self { until, window, .. } = *self;
         let (first, end) = window
@@ -67,13 +72,15 @@ impl FinalResults<'_> {
     }
 }
 
-/// A streaming observer of a run. The observer receives every record once, in order, and must store what it needs
-/// later, because the run discards old records.
+/// A streaming observer of a run.
+///
+/// The observer receives every record once, in order. It must store the data that it needs later, because the run
+/// discards old records.
 pub trait StreamingObserver: Debug + Send {
-    /// Processes records that are final.
+    /// Processes results that can no longer change.
     fn take(&mut self, settled: &FinalResults<'_>);
 
-    /// Returns the result after the last call of `take`.
+    /// Returns the observer's result. Called once, after the last call of `take`.
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 

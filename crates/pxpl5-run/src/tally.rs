@@ -1,7 +1,7 @@
-//! Streaming sums of a run's results.
+//! Sums of a run's results, updated during the run.
 //!
-//! Pictures are processed in the order in which they are shown, each once, after all its records are complete. With a
-//! limit on samples, memory stays constant except for one byte a period ([`PictureResults`]).
+//! Pictures are processed once, in the order in which they are shown, after all their records are complete. With a
+//! limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
 
 use crate::face_notes::RequestedUpdates;
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
@@ -16,63 +16,66 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
-/// Largest number of late regions that a [`Tally`] lists one by one.
+/// Largest number of late regions that a [`Tally`] lists individually.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Sums of a run's results. Times are in milliseconds and cover the pictures in the run's
-/// [`ResultWindow`](crate::ResultWindow). Latencies cover the complete pictures only.
+/// Sums of a run's results. Times are in milliseconds and cover the pictures in the run's result window
+/// ([`ResultWindow`](crate::ResultWindow)). Latencies cover only the complete pictures.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Number of pictures that were begun and evaluated, complete or not.
     pub pictures: u64,
-    /// Number of complete pictures that were shown, including the warm-up.
+    /// Number of complete pictures that were shown in the whole run, including start-up.
     pub shown: u64,
-    /// Number of complete pictures in the window.
+    /// Number of complete pictures in the result window.
     pub complete: u64,
-    /// Number of complete pictures since the last incomplete or late one.
+    /// Number of complete pictures since the last picture that was incomplete or late.
     pub shown_in_a_row: u64,
-    /// Latencies from the start of TRANSFORM until the picture is shown, or as the pipeline defines latency.
+    /// Latencies in milliseconds, by the pipeline's definition. Usually from the start of TRANSFORM until the picture
+    /// is shown.
     pub latency_ms: Samples,
     /// Samples for each part of [`LATENCY_PARTS`], in the same order.
     pub parts_ms: Vec<Samples>,
-    /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the window.
+    /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the result window.
     pub eye_ms: Samples,
     /// Times from the start of an eye's TRANSFORM to the swap that shows its picture.
     pub eye_swap_ms: Samples,
-    /// Times from the start of an eye's TRANSFORM to the swap, in retraces. The retrace of the swap counts.
+    /// Times from the start of an eye's TRANSFORM to the swap, counted in retraces. The retrace of the swap is
+    /// included.
     pub eye_retraces: Samples,
     /// Times from the first to the last word of a picture's first copy and of its second copy, for all pictures in the
-    /// window.
+    /// result window.
     pub copy_ms: [Samples; 2],
     /// Times from the start of a picture to the first word of its first copy.
     pub copy_begins_ms: Samples,
-    /// Durations of TRANSFORM and of RENDER, for all pictures in the window.
+    /// Durations of TRANSFORM and of RENDER, for all pictures in the result window.
     pub stage_ms: [(Stage, Samples); 2],
-    /// Number of updates in the window that were shown, by display memory. Memories without updates have no entry.
+    /// Number of updates in the result window that were shown, by display memory. Memories without updates have no
+    /// entry.
     pub memory_updates: BTreeMap<usize, u64>,
     /// Number of regions that arrived after their deadline.
     pub late_regions: u64,
     /// The first late regions, at most [`LATE_REGIONS_LISTED`].
     pub first_late_regions: Vec<LateRegion>,
-    /// Number of records (marks, arrivals, swaps) that were read to compute the sums. A record that is read twice
+    /// Number of records (time stamps, arrivals, swaps) that were read to compute the sums. A record that is read twice
     /// counts twice.
     pub records_read: u64,
     /// Latencies by surface or pair of surfaces, in the order of [`LATENCY_SURFACES`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,
     ends: PictureResults,
-    /// First period of the window, as far as the window is known.
+    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
-    /// Sum of the port times of all regions, in milliseconds.
+    /// Sum over all regions of the time for which a region occupies its display port, in milliseconds.
     region_ms: f64,
     region_pixels: u64,
-    /// First period after the run.
+    /// First display period after the run.
     end: PeriodNumber,
     field_ms: f64,
     /// Largest number of samples of each kind that are kept.
     limit: usize,
 }
 
-/// Latencies of one surface, or from the first to the second surface of a pair.
+/// Latencies of one surface, or of a pair from the first surface's begin to the second surface's end.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLatency<'a> {
     /// Surface whose TRANSFORM begins the latency.
@@ -87,7 +90,8 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// Times of the first and the last word of a copy: one eye under Rendering Control, one half of a field under Slats.
+/// Times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field under
+/// Slats.
 struct CopySpan {
     begin: Time,
     end: Time,
@@ -96,8 +100,8 @@ struct CopySpan {
 type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
 
 impl Tally {
-    /// Creates empty sums for a run that ends when the period `end` begins. At most `limit` samples of each kind are
-    /// kept.
+    /// Creates empty sums for a run that ends at the beginning of the period `end`. At most `limit` samples of each
+    /// kind are kept.
     pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
         let none = || Samples::keeping(limit);
         Self {
@@ -146,7 +150,8 @@ impl Tally {
         }
     }
 
-    /// Adds the times of counted pictures that lie in the window. All records of these pictures must be complete.
+    /// Adds the times of counted pictures that lie in the result window. All records of these pictures must be
+    /// complete.
     pub(crate) fn take(&mut self, settled: &FinalResults<'_>) {
         let FinalResults { pipeline, record, notes, window, .. } = *settled;
         let Some(window) = window else { return };
@@ -158,7 +163,7 @@ impl Tally {
         if steady.is_empty() {
             return;
         }
-        // Copies and stages of all pictures in the window count; latencies count for complete pictures only.
+        // All pictures in the window count for copies and stages. Only complete pictures count for latencies.
         let stages = record.stages();
         self.take_copies(pipeline, record, &steady);
         let complete = steady.iter().filter(|times| times.is_shown());
@@ -176,7 +181,7 @@ impl Tally {
         }
     }
 
-    /// Clears the samples of the window. Counts over the whole run stay.
+    /// Clears the samples of the result window. Counts over the whole run stay.
     fn restart(&mut self, first_period: PeriodNumber) {
         let fresh = Self::new(self.end, self.field_ms, self.limit);
         let before = std::mem::replace(self, fresh);
@@ -212,8 +217,8 @@ impl Tally {
         }
     }
 
-    /// Returns the latencies of both surfaces and of the pair. The iterator is empty if surfaces have no TRANSFORM of
-    /// their own.
+    /// Returns the latencies of both surfaces and of the pair. The iterator is empty if the surfaces share one
+    /// TRANSFORM.
     pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
         let latencies = LATENCY_SURFACES.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);
@@ -232,7 +237,8 @@ impl Tally {
         }
     }
 
-    /// Adds the times from an eye's first TRANSFORM on any slave to the swap that shows the picture.
+    /// Adds the times from the start of an eye's TRANSFORM on the first slave processor to the swap that shows the
+    /// picture.
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
@@ -269,7 +275,8 @@ impl Tally {
         }
     }
 
-    /// Adds regions that have arrived, each once. A message occupies a channel for the span `message`.
+    /// Adds regions that have arrived. Each region must be added once. A message occupies a channel for the span
+    /// `message`.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
@@ -278,15 +285,15 @@ impl Tally {
         }
     }
 
-    /// Adds regions that arrived late, each once.
+    /// Adds regions that arrived late. Each region must be added once.
     pub(crate) fn take_late(&mut self, late: &[LateRegion]) {
         self.late_regions += late.len() as u64;
         let room = LATE_REGIONS_LISTED - self.first_late_regions.len();
         self.first_late_regions.extend(late.iter().take(room));
     }
 
-    /// Returns the mean port time of a region, in microseconds, scaled to 15,360 pixels. Returns NaN if no region
-    /// arrived.
+    /// Returns the mean time for which a region occupies its display port, in microseconds, scaled to 15,360 pixels.
+    /// Returns NaN if no region arrived.
     #[must_use]
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
@@ -297,7 +304,7 @@ impl Tally {
     }
 }
 
-/// Returns the stages of a picture. The given stages must be in order of pictures.
+/// Returns the stages of a picture. The given stages must be sorted by picture.
 pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
     let first = stages.partition_point(|span| span.picture < picture);
     let count = stages[first..].iter().take_while(|span| span.picture == picture).count();

@@ -9,18 +9,18 @@ use tracking::Pose;
 /// Function that returns the view with a number, from the pose that is sampled at a time.
 pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
-/// Function by which firmware with a clock of its own requests a view. The arguments are the view's number, the instant
-/// up to which tracker reports have arrived, and the instant that the view is drawn for.
+/// Function by which firmware with its own clock requests a view. The arguments are the view's number, the instant up
+/// to which tracker reports have arrived, and the instant for which the view is drawn.
 pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
-/// Function that returns the pose that a host knows at one instant, predicted for another instant. Calls must have
-/// non-decreasing first arguments.
+/// Function that returns the pose that a host knows at one instant, predicted for another instant. From call to call,
+/// the first argument must not decrease.
 pub type Poses = Arc<dyn Fn(Time, Time) -> Pose + Send + Sync>;
 
-/// Function that returns the arrival time of the first tracker report after an instant, or `None` if no report will
-/// arrive.
+/// Function that returns the arrival time of the first tracker report after an instant, or `None` if no later report
+/// exists.
 pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
 
 /// Function that returns the time at which a host begins a frame. The argument is the instant at which the host is
-/// ready. `None` means never.
+/// ready. `None` means that the host begins no more frames.
 pub type FrameStarts = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;

@@ -1,4 +1,4 @@
-//! Memory management of long runs: adds old records to the sums and discards them.
+//! Memory management of long runs: adds the results of old records to the sums and discards the records.
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
@@ -16,19 +16,19 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Number of records (marks, arrivals, swaps, poses and reports) below which no record is discarded. A record takes
-/// about 80 bytes.
+/// Number of records (time stamps, arrivals, swaps, poses and reports) below which no record is discarded. A record
+/// takes about 80 bytes.
 const LEAST_RECORDS: usize = 32_768;
 
-/// Number of newest pictures that are not final, because later records may still belong to them.
+/// Number of newest pictures whose results can still change, because later records may belong to them.
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
 /// State of the sums of a run, and of the records that are still needed.
 ///
-/// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records are
-/// discarded if they are [`PERIODS_HELD`] periods older than the first picture that is not final. All periods before
-/// these records are final too. Records of the head are kept for [`PERIODS_HELD`] periods more, because views are
+/// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
+/// display periods. Records are discarded [`PERIODS_HELD`] periods before the first picture that is not final. All
+/// earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more periods, because views are
 /// predicted from older reports.
 #[derive(Debug)]
 pub(crate) struct Window {
@@ -36,9 +36,9 @@ pub(crate) struct Window {
     sum: Option<Box<dyn StreamingObserver>>,
     forgets: bool,
     samples: usize,
-    /// Latest instant for which all pictures that were shown by then are in the sums.
+    /// Latest instant up to which all shown pictures are in the sums.
     taken_to: Option<Time>,
-    /// Number of kept arrivals that are in the sums already.
+    /// Number of arrivals in memory that are already in the sums.
     arrivals_taken: usize,
     /// Number of records at which the next pass over the records begins.
     next_look: usize,
@@ -68,7 +68,8 @@ impl Window {
         Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
     }
 
-    /// Adds final results to the sums and discards their records, if the run may discard records and has many.
+    /// Adds results that can no longer change to the sums, and discards their records. Does nothing if the run has few
+    /// records or must keep all of them.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
@@ -82,12 +83,11 @@ impl Window {
             run.discard_before(begin, of_head);
             self.arrivals_taken = run.machine.record().observation().arrivals.len();
         }
-        // The next pass begins when the number of records has doubled, so the cost a record is bounded.
+        // The next pass begins when the number of records has doubled, so the cost per record is bounded.
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Adds final pictures to the sums. Returns the instant from which on records are still needed for the other
-    /// pictures.
+    /// Adds final pictures to the sums. Returns the earliest instant whose records other pictures still need.
     fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
@@ -122,14 +122,14 @@ impl Window {
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
     }
 
-    /// Hands final results to all streaming observers.
+    /// Passes final results to all streaming observers.
     fn take(&mut self, settled: &FinalResults<'_>) {
         self.tally.take_arrivals(settled.arrivals, settled.record.message_span());
         self.tally.take(settled);
         self.sum.iter_mut().for_each(|sum| sum.take(settled));
     }
 
-    /// Adds the rest of a run that ended in the period `reached`, and returns the results.
+    /// Adds the remaining results of a run that ended in the period `reached`. Returns the complete results.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
@@ -157,13 +157,13 @@ impl Window {
     }
 }
 
-/// Returns the instant that lies [`PERIODS_HELD`] periods before an instant.
+/// Returns the instant that is [`PERIODS_HELD`] periods earlier than the given instant.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))
 }
 
-/// Returns the mean period of the first display over 60,000 periods, in milliseconds.
+/// Returns the mean duration of a period of the first display over 60,000 periods, in milliseconds.
 pub(crate) fn field_ms(record: &Record) -> f64 {
     record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
 }

@@ -4,15 +4,16 @@ use crate::picture::{PngError, encoder};
 use image::RgbImage;
 use std::io::Write;
 
-/// An animated PNG file during writing.
+/// An animated PNG file that is being written.
 pub struct Animation<W: Write> {
     writer: png::Writer<W>,
 }
 
 impl<W: Write> Animation<W> {
-    /// Starts a file with `pictures` pictures of the same size. Each picture is shown for `delay` (numerator and
-    /// denominator, in seconds), and the animation repeats. `texts` become text chunks of the file, as in
-    /// [`png_bytes`](crate::png_bytes).
+    /// Starts a file with `pictures` pictures of the same size. The animation repeats.
+    ///
+    /// Each picture is shown for `delay` (numerator and denominator, in seconds). `texts` become text chunks of the
+    /// file, as in [`png_bytes`](crate::png_bytes).
     ///
     /// # Errors
     ///

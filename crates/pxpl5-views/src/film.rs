@@ -16,14 +16,15 @@ use thiserror::Error;
 /// Surfaces of the first display that a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmSurfaces {
-    /// A single surface, such as that of an eye.
+    /// A single surface, such as the surface of one eye.
     One(SurfaceId),
     /// All surfaces side by side, the first one on the left.
     All,
 }
 
-/// A film of an experiment. A film has a frame for each period of the display, which shows the screen at the end of the
-/// period. With an NTSC display, the lines of the previous field stand between those of the present one.
+/// A film of an experiment. It has one frame per display period, which shows the screen at the end of the period.
+///
+/// With an NTSC display, a frame combines the lines of the current field with the lines of the previous field.
 #[derive(Clone, Debug)]
 pub struct Film {
     experiment: Experiment,
@@ -63,11 +64,11 @@ pub enum FilmError {
     Png(#[from] PngError),
 }
 
-/// Smallest and largest number of periods in a film. The largest number takes more than an hour of NTSC.
+/// Smallest and largest number of periods in a film. The largest number corresponds to more than an hour of NTSC.
 pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 
 impl Film {
-    /// Creates a film of an experiment, from a period of the display on.
+    /// Creates a film of an experiment that begins at the display period `first_period`.
     #[must_use]
     pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmSurfaces) -> Self {
         Self { experiment, first_period, periods, of }
@@ -100,8 +101,8 @@ impl Film {
         Ok(animation.finish()?)
     }
 
-    /// Runs the experiment for the same length without pixels, to find the offset of the raster in each period. Returns
-    /// `None` for a raster that shifts nothing.
+    /// Runs the experiment for the same length without pixels, to find the raster offset in each period. Returns `None`
+    /// for a raster that shifts nothing.
     fn without_pixels(&self) -> Result<Option<Outcome>, FilmError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);
@@ -124,7 +125,7 @@ impl Film {
     }
 }
 
-/// Returns the width and height of some surfaces side by side.
+/// Returns the total width and height of surfaces that are shown side by side.
 fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
     let shown: Vec<&Surface> = surfaces.iter().filter_map(|id| display.surfaces().get(id.index())).collect();
     let width = shown.iter().map(|surface| surface.width).sum();

@@ -4,8 +4,9 @@ use pxpl5_display::Display;
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// Returns the duration of a film's frame as a fraction of a second, in the form that animated PNG needs. Numerator and
-/// denominator have 16 bits each. The fraction is the one nearest to the period of the display.
+/// Returns the duration of a film's frame as a fraction of a second, in the form that animated PNG needs.
+///
+/// Numerator and denominator have 16 bits each. The result is the fraction nearest to the duration of a display period.
 #[must_use]
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
     // Ticks are rounded to picoseconds. Over so many periods, the rounding is negligible.
@@ -27,12 +28,14 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, times both denominators.
+    /// Returns the distance from another fraction, multiplied by both denominators.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
 
-    /// Returns the next fraction of a chain: `times` times this fraction, plus the fraction before.
+    /// Returns the next convergent of a continued fraction: `times` times this fraction, plus the fraction `before`.
+    ///
+    /// Numerators and denominators are added separately.
     const fn followed(self, times: u128, before: Self) -> Self {
         Self { over: times * self.over + before.over, under: times * self.under + before.under }
     }
@@ -45,8 +48,9 @@ impl Fraction {
     }
 }
 
-/// Returns the nearest fraction within the limit, by continued fractions. The result is the last fraction of the chain
-/// within the limit, or one between this and the next.
+/// Returns the nearest fraction within the limit, by continued fractions.
+///
+/// The result is the last convergent within the limit, or a fraction between it and the next convergent.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };

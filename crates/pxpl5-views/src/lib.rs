@@ -11,17 +11,17 @@
 //! |---|---|
 //! | [`timeline`] | the papers' pipeline figures: a row for each resource that works independently |
 //! | [`trace_export`] | all events, for a trace viewer |
-//! | [`results`] | a row for each picture, and the origin of each file, by which the file can be made again |
-//! | [`charts`] | speed against error of the levels of modelling, error against time, distribution of latencies |
+//! | [`results`] | a row for each picture, and the origin of each file, from which the file can be reproduced |
+//! | [`charts`] | speed of the levels of modelling against their error, error over time, distribution of latencies |
 //! | [`page`] | one page of HTML without external resources |
 //! | [`Film`] | the displayed pictures, period by period |
 //! | [`png_bytes`] | a picture with its origin |
 //! | [`Animation`] | a sequence of pictures as animated PNG |
 //!
-//! SVG and HTML have one writer with one escape function (`markup`, and `svg` for shapes). PNG has one writer
-//! (`png_bytes` and `Animation`), and so has CSV ([`results::csv_table`]).
+//! One module writes all SVG and HTML, with one escape function (`markup`, with shapes in `svg`). Likewise, one module
+//! writes all PNG (`png_bytes` and `Animation`), and one writes all CSV ([`results::csv_table`]).
 //!
-//! All output depends on simulated time only, so it is the same on every host. Names, colours and letters of surfaces
+//! All output depends only on simulated time, so it is the same on every host. Names, colours and letters of surfaces
 //! come from the machine's displays ([`pxpl5_display::Surface`]).
 //!
 //! **Not here:** files, threads and clocks of the host. All output goes to a [`std::io::Write`] or is returned as text

@@ -23,7 +23,7 @@ impl Element {
         self
     }
 
-    /// Appends text to the content. An element with empty text has a closing tag of its own.
+    /// Appends text to the content. Even with empty text, the element gets a closing tag.
     pub(crate) fn text(mut self, text: impl Display) -> Self {
         self.content().push_str(&escape(&text.to_string()));
         self
@@ -41,7 +41,7 @@ impl Element {
         self
     }
 
-    /// Appends a child element in place.
+    /// Appends a child element to an element that the caller keeps.
     pub(crate) fn add(&mut self, child: &Self) {
         let _ = write!(self.content(), "{child}");
     }

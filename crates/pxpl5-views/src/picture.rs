@@ -4,7 +4,7 @@ use image::RgbImage;
 use std::io::Write;
 use thiserror::Error;
 
-/// Error of the PNG encoder: a picture has no pixels, or a text has a key that PNG does not allow.
+/// Error of the PNG encoder. Examples are a picture without pixels, and a text with a key that PNG does not allow.
 #[derive(Debug, Error)]
 #[error("a picture cannot be encoded: {0}")]
 pub struct PngError(
@@ -27,7 +27,7 @@ pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>
     Ok(bytes)
 }
 
-/// Returns an encoder for pictures with eight bits a colour, which will write the given texts.
+/// Returns an encoder for pictures with eight bits per colour component. The encoder also writes the given texts.
 pub(crate) fn encoder<W: Write>(
     out: W,
     (width, height): (u32, u32),

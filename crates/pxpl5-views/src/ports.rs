@@ -1,5 +1,5 @@
-//! Ports of displays that have more ports than surfaces, such as display memories, with the pictures that each port
-//! showed.
+//! Displays with more ports than surfaces, such as displays with several memories: their ports, and the pictures that
+//! each port showed.
 
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
@@ -16,11 +16,11 @@ pub(crate) struct DisplayPort {
 /// A picture that a port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShownPicture {
-    /// Picture, or update, that was swapped in.
+    /// Number of the picture or update that was swapped in.
     pub picture: PictureNumber,
-    /// Retrace at which the picture was swapped in.
+    /// Time of the retrace at which the picture was swapped in.
     pub begin: Time,
-    /// Retrace at which the next picture was swapped in, or the end of the run.
+    /// Time of the retrace at which the next picture was swapped in, or the end of the run.
     pub end: Time,
 }
 
@@ -48,8 +48,8 @@ fn has_more_ports(display: &dyn Display) -> bool {
     display.nodes().len() > display.surfaces().len()
 }
 
-/// Returns the pictures that a port has shown, in the order in which they were begun. Each is shown from one swap to
-/// the next.
+/// Returns the pictures that a port has shown, in the order in which they were begun. Each picture is shown from one
+/// swap to the next.
 pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);

@@ -3,8 +3,8 @@
 use crate::markup::Element;
 use std::fmt::{self, Display};
 
-/// Length in hundredths of a unit. Numbers with two decimals come from integers, so a drawing has the same bytes on
-/// every host.
+/// A length in hundredths of an SVG unit. Numbers with two decimals come from integers, so a drawing has the same bytes
+/// on every host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Units(pub(crate) i64);
 
@@ -61,27 +61,27 @@ pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Eleme
     Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
 }
 
-/// Returns a straight line with a class. The numbers are the coordinates of both ends.
+/// Returns a straight line with a class. The numbers are the coordinates of the two end points.
 pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }
 
-/// Returns an empty text element with a class. The text is added later.
+/// Returns an empty text element with a class, at a position. The caller adds the text.
 pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
     Element::new("text").with("class", class).with("x", x).with("y", y)
 }
 
-/// Returns a line of a chart, from the path for the attribute `d` and a colour.
+/// Returns a line of a chart. `course` is the path for the attribute `d`.
 pub(crate) fn line(course: impl Display, colour: &str) -> Element {
     Element::new("path").with("d", course).with("stroke", colour)
 }
 
-/// Returns an empty text element of a chart. `anchor` tells which part of the text is at the point: `middle` or `end`.
+/// Returns an empty text element of a chart. `anchor` states which part of the text is at the point: `middle` or `end`.
 pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
 }
 
-/// Returns a tooltip, which a viewer shows for the element that contains it.
+/// Returns a tooltip. A viewer shows it for the element that contains it.
 pub(crate) fn hint(text: impl Display) -> Element {
     Element::new("title").text(text)
 }

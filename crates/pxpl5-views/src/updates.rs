@@ -1,4 +1,4 @@
-//! Assignment of the host's updates to pictures.
+//! Finds the update from the host that each picture shows.
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
@@ -6,19 +6,19 @@ use pxpl5_run::{PictureTimes, SoFar};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// The host's updates of a run.
+/// The updates that the host sent in a run.
 pub(crate) struct Updates {
-    /// True if the host samples a pose for each picture. Then update and picture have the same number.
+    /// True if the host samples a pose for each picture. Update and picture then have the same number.
     by_picture: bool,
-    /// Received updates, in order of time.
+    /// Updates that a graphics processor has received, in order of time.
     received: Vec<Received>,
 }
 
-/// An update that has reached the GP.
+/// An update that has reached the graphics processor.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Received {
     at: Time,
-    /// Number of the update's SEND.
+    /// Number of the SEND that carried the update.
     update: PictureNumber,
 }
 
@@ -32,8 +32,10 @@ impl Updates {
         Self { by_picture: host_samples(run), received }
     }
 
-    /// Returns the update that a picture shows. Either the picture has an update of its own, or it shows the last
-    /// update that had reached the GP when the picture began.
+    /// Returns the update that a picture shows.
+    ///
+    /// If the host does not sample a pose for each picture, this is the last update that had reached the graphics
+    /// processor when the picture's pose was sampled.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);
@@ -44,7 +46,7 @@ impl Updates {
     }
 }
 
-/// Returns true if the host samples the poses of pictures.
+/// Returns true if the host samples the poses of pictures, instead of a graphics processor.
 fn host_samples(run: &SoFar<'_>) -> bool {
     let host = run.record().ports().host;
     run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)

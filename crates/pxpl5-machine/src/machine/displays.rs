@@ -42,7 +42,7 @@ impl Machine {
     }
 }
 
-/// Records that a surface, or the part of it behind one port, shows its other buffer from a tick on, and signals the
+/// Records the tick from which a surface, or its part behind one port, shows its other buffer. Signals the swap to the
 /// first GP.
 fn note_swap(
     observation: &mut Observation,

@@ -1,4 +1,4 @@
-//! Policy `cells`: the cells around the user are distributed over the display memories.
+//! Policy `cells`: assigns the cells around the user to the display memories.
 
 use super::face_plan::{Due, DuePolicy, Updates, place};
 use cube_control::FaceWarp;
@@ -10,8 +10,8 @@ use pxpl5_wire::PictureNumber;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Region priority rendering. A structure is in the fastest memory of any of its cells. A structure that moves by
-/// itself is in memory 0.
+/// Region priority rendering: assigns each structure to the fastest memory of any of its cells. A structure that moves
+/// by itself is in memory 0.
 ///
 /// All memories of a cycle are drawn from one position of the eye, because warping must know the exact positions. With
 /// warping, all memories of a cycle swap together. A memory that swapped before its neighbour would be warped for a
@@ -43,13 +43,13 @@ impl ByCells {
         }
     }
 
-    /// Returns the memory of a structure.
+    /// Returns the index of the memory that holds a structure.
     fn memory(&self, structure: usize) -> usize {
         let cells = self.cells.get(structure).into_iter().flatten();
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// Returns the warp that makes an update of a memory meet the next slower memory.
+    /// Returns the displacement of vertices that makes an update of a memory meet the next slower memory.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {
@@ -61,7 +61,7 @@ impl ByCells {
         })
     }
 
-    /// Returns the memories to draw now. A memory that was empty and is still empty is left out.
+    /// Returns the memories to draw now. A memory that was empty and remains empty is left out.
     fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
         let mut drawn = Vec::new();
         for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {

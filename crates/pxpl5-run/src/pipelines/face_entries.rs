@@ -1,4 +1,4 @@
-//! Registry entries of the address recalculation pipelines: names, keys and variants.
+//! Registry entries of the address recalculation pipelines: names, settings and variants.
 
 use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
@@ -11,11 +11,11 @@ use priority_rendering::{Falloff, PriorityTiming};
 use pxpl5_machine::NamedTable;
 use std::sync::Arc;
 
-/// Keys of each policy.
+/// Settings of each policy.
 const KEYS: [&[Key]; 4] =
     [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
-/// Keys of an ideal source, which supports every policy. The keys for cells have an effect only with cells.
+/// Settings of an ideal source, which supports every policy. The settings for cells have an effect only with cells.
 const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];

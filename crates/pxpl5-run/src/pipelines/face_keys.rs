@@ -1,4 +1,4 @@
-//! Names and keys of the address recalculation pipelines.
+//! Names and settings of the address recalculation pipelines.
 
 use crate::keys::{Key, KeyValues};
 use priority_rendering::Falloff;

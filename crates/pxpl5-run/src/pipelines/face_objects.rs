@@ -9,25 +9,25 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects. Each structure is in the slowest memory in which its image stays correct.
+/// Priority rendering by objects: assigns each structure to the slowest memory in which its image stays correct.
 pub(super) struct ByObjects {
     scan: Scan,
     policy: Objects,
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
     cycle: u64,
-    /// First field of the last cycle, and the eye position at its beginning.
+    /// Field in which the last cycle began, and the eye position at that time.
     began: Option<(PeriodNumber, DVec3)>,
 }
 
-/// A sphere around a structure that does not move.
+/// A sphere that contains a structure that does not move.
 #[derive(Clone, Copy, Debug)]
 struct ObjectSphere {
     centre: DVec3,
     radius_m: f64,
 }
 
-/// Returns a sphere that contains a structure. Its centre is the centre of the structure's bounding box.
+/// Returns a sphere that contains a structure. Its centre is the middle of the structure's bounding box.
 fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphere {
     let corners = list.triangles[structure.triangles.clone()].iter().flatten();
     let points = corners.map(|corner| (list.positions[*corner as usize].as_dvec3(), 0.0));

@@ -1,5 +1,5 @@
-//! Plans of a host that requests updates: either the whole scene in one memory, or the memories that a policy finds
-//! due.
+//! Plans by which a host requests updates of display memories: the whole scene in one memory, or the memories that a
+//! policy selects.
 
 use crate::face_notes::{RequestedUpdate, RequestedUpdates};
 use crate::pipeline::Setup;
@@ -12,17 +12,17 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Function that returns the next action of a host that is ready for an update.
+/// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
 
-/// State that all plans need: views, frame starts, and the record of updates.
+/// State that all plans share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: RequestedUpdates,
-    /// Number of updates of each memory so far.
+    /// Number of updates that were sent so far, for each memory.
     sent: Vec<u64>,
-    /// True if a structure is attached to the head. Its position then depends on the head's direction.
+    /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
     has_head_frame: bool,
 }
 
@@ -37,13 +37,13 @@ impl Updates {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }
 
-    /// Returns the next update of a memory, drawn from the eye position that is known now.
+    /// Returns the next update of a memory, drawn from the eye position that is known at `now`.
     fn of_memory(&mut self, number: PictureNumber, now: Time, due: &Due) -> FaceUpdate {
         let view = due.view.clone().unwrap_or_else(|| self.view(number, now));
         // The two buffers of a memory take turns.
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
-        // The record tells later which update each swap has shown.
+        // From this record, later code finds the update that each swap has shown.
         self.notes.write(RequestedUpdate {
             picture: number,
             view: view.number,
@@ -62,8 +62,10 @@ impl Updates {
         }
     }
 
-    /// Returns the view of an unrotated eye at the same position, with world axes. Structures attached to the head are
-    /// drawn in the known direction of the head. Until the next update, they turn with the faces.
+    /// Returns the view of an eye at the same position but without rotation, along the world's axes.
+    ///
+    /// Structures attached to the head are drawn in the currently known direction of the head. Until the next update,
+    /// they turn with the faces.
     fn ahead(&self, view: &FrameView) -> FrameView {
         let eye = view.eyes.first();
         let place = eye.map_or(DVec3::ZERO, |eye| place(&eye.world_to_eye));
@@ -74,7 +76,7 @@ impl Updates {
     }
 }
 
-/// A memory that is due, with the content of its update.
+/// A memory that must be redrawn, with the content of its update.
 #[derive(Clone, Debug)]
 pub(super) struct Due {
     pub(super) memory: usize,
@@ -92,7 +94,7 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// Plan with a single memory. Each update redraws all structures, one update after the other.
+/// A plan with a single memory. Each update redraws all structures. The next update begins when the previous one ends.
 pub(super) struct Full {
     updates: Updates,
     structures: Arc<[bool]>,
@@ -124,17 +126,17 @@ impl Full {
     }
 }
 
-/// A policy that finds the due memories at the beginning of a cycle.
+/// A policy that selects the memories to redraw at the beginning of a cycle.
 pub(super) trait DuePolicy {
-    /// Returns the memories to draw, in the order of sending. The first one gets the update number `number`.
+    /// Returns the memories to redraw, in the order of sending. The first memory gets the update number `number`.
     fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due>;
 }
 
-/// Plan for priority rendering: a policy finds the due memories of each cycle.
+/// A plan for priority rendering: in each cycle, a policy selects the memories to redraw.
 ///
-/// A cycle begins when all memories of the cycle before have been sent, but not in the field in which that cycle began.
-/// The due memories are sent in rising order. On a machine that is fast enough, each cycle takes one field and begins
-/// with the field.
+/// A cycle begins when all memories of the previous cycle have been sent, but not in the same field as the previous
+/// cycle. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes one
+/// field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: Scan,

@@ -1,5 +1,5 @@
-//! Pipelines that draw the six faces of a cube around the eye. The display selects pixels by the orientation of the
-//! head.
+//! Pipelines that draw the six faces of a cube around the eye. The display then selects the visible pixels by the
+//! orientation of the head.
 
 use super::face_cells::ByCells;
 use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
@@ -32,50 +32,54 @@ use std::sync::Arc;
 /// Policy that decides which structures are drawn into which display memory, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FacePolicy {
-    /// One memory holds all structures and is redrawn as often as possible.
+    /// One display memory holds all structures and is redrawn as often as possible.
     Full,
-    /// Each structure is in the slowest memory in which its image stays correct (CPR05).
+    /// Each structure is drawn into the slowest memory in which its image stays correct (CPR05).
     Objects,
-    /// Each structure is in the memory of its cell, which depends on the distance to the user's cell (CPR05).
+    /// Each structure is drawn into the memory of its cell. The memory depends on the cell's distance from the user's
+    /// cell (CPR05).
     Cells,
-    /// Like [`FacePolicy::Cells`], with vertices moved so that the images of adjacent memories meet at their borders.
+    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent memories meet at their borders.
     CellsWarped,
 }
 
-/// Renderer of the faces.
+/// The renderer that draws the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
     PixelPlanes,
-    /// An ideal renderer without delay, which draws from the eye position that is known at each retrace. Errors that
-    /// remain have other causes than drawing time.
+    /// An ideal renderer without delay. It draws from the eye position that is known at each retrace.
+    ///
+    /// Errors that remain with this renderer are not caused by drawing time.
     Ideal,
 }
 
-/// A pipeline that draws six faces for an address recalculation pipeline.
+/// A pipeline that draws six cube faces for an address recalculation display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
-    /// Renderer of the faces.
+    /// The renderer that draws the faces.
     pub source: FaceSource,
-    /// Policy for the display memories.
+    /// Policy that assigns structures to display memories.
     pub policy: FacePolicy,
-    /// Interval at which the display latches the orientation: by field, by line or by pixel.
+    /// Interval at which the display latches (samples and holds) the head's orientation: by field, by line or by pixel.
     pub latch: Latch,
     /// Method of shading.
     pub shading: Shading,
-    /// With cells, true if structures are cut at the borders of cells. Otherwise a whole structure is in the fastest
-    /// memory of any of its cells.
+    /// For policies with cells: true if structures are cut at the borders of cells.
+    ///
+    /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
     pub segmented: bool,
-    /// Decrease of the vertex displacement with the distance from the border to a slower memory, for warped cells.
+    /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
+    /// memory.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
 }
 
-/// A lens that is defined by at most two numbers.
+/// A lens that is defined by at most two coefficients.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FaceLens {
-    /// Lens of the display's configuration. By default, the display has no lens.
+    /// The lens in the display's configuration. By default, the display has no lens.
     #[default]
     OfDisplay,
     /// Lens whose viewing angle is proportional to the distance from the middle.
@@ -86,7 +90,7 @@ pub enum FaceLens {
 }
 
 impl FaceLens {
-    /// Converts a lens. Returns `None` for a table, which has too many numbers.
+    /// Converts a lens. Returns `None` for a lens that is defined by a table.
     #[must_use]
     pub fn of(lens: Lens) -> Option<Self> {
         match lens {
@@ -121,7 +125,7 @@ impl FaceLens {
 }
 
 impl FacePipeline {
-    /// Creates a pipeline that runs on the machine. The latch mode is that of the papers: once a field.
+    /// Creates a pipeline that runs on the machine. The display latches one orientation per field, as in the papers.
     #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
         let source = FaceSource::PixelPlanes;
@@ -171,7 +175,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// Returns the plan by which the host selects updates.
+    /// Returns the plan by which the host selects the next update of a display memory.
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
@@ -208,7 +212,7 @@ impl FacePipeline {
     }
 }
 
-/// Returns the numbers of the policies after a check of their ranges.
+/// Returns the parameters of the policies after a check of their ranges.
 fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError> {
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check().map_err(refused)?;
@@ -229,7 +233,8 @@ fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, ConfigEr
         .ok_or_else(|| ConfigError::Board(format!("faces need the display arp, found {}", record.display().name())))
 }
 
-/// Returns the projection of a face with its guard texels. Near and far plane are those of the head-mounted display.
+/// Returns the projection of a cube face with its guard texels. The near and far planes come from the head-mounted
+/// display.
 fn projection(display: &ArpConfig) -> Mat4 {
     let geometry = display.geometry();
     let HmdConfig { near_m: near, far_m: far, .. } = HmdConfig::unc();
@@ -241,11 +246,12 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// Index of the display port that receives orientations.
+/// Index of the display port that receives the head's orientations.
 const ORIENTATION_PORT: usize = 0;
 
-/// Connection from the host to the display that carries orientations. The first orientation is that of the start; later
-/// ones follow reports or are predicted.
+/// Connection from the host to the display that carries the head's orientations.
+///
+/// The first orientation is the head's initial orientation. Later ones follow tracker reports or are predicted.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -286,7 +292,7 @@ impl Pipeline for FacePipeline {
         if self.source == FaceSource::Ideal {
             settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
         }
-        // The key for the lens is absent without a lens, so that names of older experiments stay valid.
+        // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
         settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
@@ -314,8 +320,8 @@ impl Pipeline for FacePipeline {
         Some(self.latch)
     }
 
-    /// Ensures that the display takes faces and uses the latch mode and the lens of this variant. The policy `Full`
-    /// uses one display memory.
+    /// Adapts the display to this variant: it must accept cube faces and use the variant's latch mode and lens. The
+    /// policy `Full` uses one display memory.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
@@ -354,8 +360,9 @@ impl Pipeline for FacePipeline {
         cut.map(Some).map_err(refused)
     }
 
-    /// Returns a description for warped cells on the machine: the displacement of vertices takes no time at any level.
-    /// An ideal renderer uses no graphics processors.
+    /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
+    ///
+    /// An ideal renderer uses no graphics processors and returns `None`.
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
         let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
         is_warped.then_some("moving the vertices of warped cells (0 in the table)")
@@ -405,7 +412,7 @@ impl Pipeline for FacePipeline {
         true
     }
 
-    /// Counts the fields from the first swap of any memory on. Each field is shown with its own latched orientation.
+    /// Counts the fields since the first swap of any memory. Each field is shown with its own latched orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);
@@ -471,8 +478,10 @@ impl FacePipeline {
     }
 }
 
-/// Returns the display list without highlights. The renderers light a region with a single direction to the eye. On a
-/// face this direction is the face's axis, so a highlight would jump at the border between two faces.
+/// Returns the display list without highlights.
+///
+/// The renderers shade a region with a single direction to the eye. On a cube face, this direction is the face's axis,
+/// so a highlight would jump at the border between two faces.
 fn matte(list: &DisplayList) -> DisplayList {
     DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
 }
@@ -491,5 +500,5 @@ const fn drawn_at_once(shown: Shown) -> PictureTimes {
     }
 }
 
-/// Number of views that slaves use at the same time: six faces of two updates.
+/// Number of views that slave processors use at the same time: six faces of two updates.
 const VIEWS_AT_A_TIME: usize = 12;

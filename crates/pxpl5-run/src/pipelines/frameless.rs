@@ -18,18 +18,18 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
 
-/// The pipeline of frameless rendering, which draws blocks of the frame in a random order without repetition. Each
-/// batch of blocks uses the newest view and is shown at once.
+/// The pipeline of frameless rendering. It draws blocks of the frame in a random order, each block once per pass.
 ///
-/// A *pass* draws every block once. The papers update single pixels, but a message with a single pixel would take 17
-/// words on the ring.
+/// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
+/// single pixels, but a message with a single pixel would take 17 words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
     pub block: u32,
-    /// Number of blocks that are drawn with one view. 0 selects the number at which ring and GPs are equally busy.
+    /// Number of blocks that are drawn with one view. The value 0 selects the number at which the ring and the graphics
+    /// processors are equally busy.
     pub batch: u32,
-    /// Seed of the random order.
+    /// Seed of the random order of blocks.
     pub seed: u64,
 }
 
@@ -41,8 +41,10 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks in a batch. While one slave transforms, the blocks of the other slaves pass the
-    /// frame buffer's port. The time of code is unknown in advance, so a fixed number is used for code.
+    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the others pass
+    /// through the frame buffer's port.
+    ///
+    /// A run of i860 code uses a fixed number, because the time of code is unknown in advance.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;
@@ -83,8 +85,10 @@ impl Default for Frameless {
     }
 }
 
-/// Smallest number of blocks in a batch. With fewer, the master's 24 us for an order would be the limit (assumed). With
-/// more than [`MOST_BATCH`], a view would be in use for too long (assumed).
+/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master's 24 us per order would limit the
+/// rate.
+///
+/// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
@@ -92,7 +96,7 @@ const MOST_BATCH: u64 = 64;
 /// kernels/order_rules.md).
 const BATCH_OF_CODE: u32 = 16;
 
-/// Returns the time at which the beam next reaches a region after an instant.
+/// Returns the first time after an instant at which the display's beam reaches a region.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
     let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
@@ -143,7 +147,7 @@ impl Pipeline for Frameless {
         Ok(())
     }
 
-    /// Returns the updates. The last block of an update represents the whole update.
+    /// Returns the updates. The last block of an update defines the times of the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
@@ -189,15 +193,16 @@ impl Pipeline for Frameless {
         "no picture is ever due: blocks are shown as they come, and there are no frames to miss"
     }
 
-    /// Returns the number of updates in a pass, because a pass is a whole picture.
+    /// Returns the number of updates in a pass, because a pass draws a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
 }
 
-/// Returns, for each update, the number of arrived blocks, and the time and place of the last one. Blocks at two frame
-/// buffers may arrive at the same instant. Then the higher port and region count as the last, independent of the order
-/// of the records.
+/// Returns, for each update, the number of arrived blocks, and the arrival time and target of the last block.
+///
+/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region is then the
+/// last one, independent of the order of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {

@@ -1,4 +1,4 @@
-//! Faces that an ideal renderer draws without delay, and the host's connection that brings them to the display.
+//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries them to the display.
 
 use super::face_plan::{Due, DuePolicy, Plan, Updates};
 use crate::latched_head::lights_of;
@@ -16,14 +16,15 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Time before a retrace at which the ideal renderer requests views. One picosecond is the shortest time of the
+/// Time before a retrace at which the ideal renderer requests views: one picosecond, the shortest time of the
 /// simulation.
 const BEFORE_RETRACE: Span = Span(1);
 
-/// Source of ideal faces: at each retrace, it writes the updates that a policy requests into the display's memories.
+/// Source of ideal cube faces. At each retrace, it writes the updates that a policy requests into the display's
+/// memories.
 ///
-/// Views, policies, number widths and the display's protocol are those of the machine. Drawing takes no time and sends
-/// no ring messages.
+/// Views, policies, number widths and the display's protocol are the same as on the machine. Drawing takes no time and
+/// sends no ring messages.
 pub(super) struct IdealFaces {
     pub(super) plan: Plan,
     pub(super) faces: Arc<Faces>,
@@ -61,7 +62,7 @@ fn before(scan: &Scan, field: PeriodNumber) -> Time {
 }
 
 impl IdealFaces {
-    /// Draws an update and returns its messages: announcement, regions, swap.
+    /// Draws an update and returns its messages: an announcement, the regions, and the swap.
     fn draw(&self, update: FaceUpdate) -> Vec<(usize, Body)> {
         let port = usize::from(update.memory);
         let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
@@ -83,7 +84,7 @@ impl IdealFaces {
 }
 
 /// Returns the setup of a host whose updates are shown at the next retrace. The views are predicted for the time at
-/// which that field lights.
+/// which the next field is lit.
 pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     let wanted = Arc::clone(&setup.wanted);
     let aim = setup.aim;
@@ -94,7 +95,7 @@ pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// Policy that draws the whole scene into memory 0 in every cycle.
+/// A policy that draws the whole scene into memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
@@ -106,7 +107,7 @@ impl DuePolicy for All {
     }
 }
 
-/// The faces of an update. A face is computed when one of its regions is read.
+/// The cube faces of an update. A face is computed when one of its regions is first read.
 #[derive(Debug)]
 struct DrawnCube {
     list: Arc<DisplayList>,
@@ -115,7 +116,7 @@ struct DrawnCube {
     faces: [OnceLock<DrawnFace>; CubeFace::ALL.len()],
 }
 
-/// Colours (0x00RRGGBB) and depths (24 bits) of a face, row by row.
+/// Colours (0x00RRGGBB) and depths (24 bits) of a cube face, row by row.
 #[derive(Debug)]
 struct DrawnFace {
     colours: Vec<Word>,

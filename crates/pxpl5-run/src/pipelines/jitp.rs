@@ -19,12 +19,13 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels, which draws each strip of a picture for its own instant (JITP).
+/// The pipeline of just-in-time pixels (JITP). It divides a picture into strips of lines and draws each strip for the
+/// instant at which the strip is displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
-    /// Instants that the picture is computed for.
+    /// The instants for which the parts of a picture are computed.
     pub viewpoint: Viewpoint,
-    /// True if strips reach the frame buffer just before the beam. False if they arrive one field earlier.
+    /// True if strips reach the frame buffer just before the display's beam. False if they arrive one field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
@@ -98,7 +99,7 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// Returns the cost of a pass over the display list. Each slave holds the whole list.
+/// Returns the cost of one pass over the display list. Each slave processor holds the whole list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
@@ -128,13 +129,14 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// Returns the time at which the first pixel of a region is scanned in its field.
+/// Returns the time at which the display scans the first pixel of a region in its field.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field: regions before the field's end, regions before the beam, and the time of the middle strip.
+/// Arrivals of a field's regions: the number before the field's end, the number before the display's beam, and the time
+/// of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -197,7 +199,7 @@ impl Pipeline for Jitp {
                 *middle_at = (*middle_at).max(Some(arrival.last_part_at));
             }
         }
-        // The middle line represents the picture: its scan is the time at which the picture is shown.
+        // The middle line defines the picture's times: the picture is shown when the middle line is scanned.
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
@@ -251,7 +253,7 @@ impl Pipeline for Jitp {
         Some(match self.viewpoint {
             Viewpoint::Field => Source::View(view(0)),
             Viewpoint::Strip => Source::View(view(strip)),
-            // Two views of a field are interpolated by the place of the strip.
+            // Two views of a field are interpolated by the position of the strip.
             Viewpoint::Dual(reading) => Source::Between {
                 from: view(0),
                 to: view(1),
@@ -272,7 +274,7 @@ pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
     RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
 }
 
-/// Tables of the firmware's numbers.
+/// Tables of the firmware's timing parameters.
 pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
 const KEYS: &[Key] =

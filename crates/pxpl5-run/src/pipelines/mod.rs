@@ -1,4 +1,4 @@
-//! The pipelines of the papers. To add a pipeline, add a file here, or write it in a crate of your own, and add a line
+//! The pipelines of the papers. To add a pipeline, write it in a new file here or in a separate crate, and add a line
 //! to `entries`.
 
 mod face_cells;
@@ -52,8 +52,8 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
     )))
 }
 
-/// Returns the display of a pipeline that draws interlaced fields of the papers' size. Fails for other displays and for
-/// smaller ones.
+/// Returns the display of a pipeline that draws interlaced fields of the papers' size. Returns an error for smaller
+/// displays and for other kinds of display.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
@@ -78,7 +78,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
 /// Methods of shading with their names. The first one is the default.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// Key of pipelines that support both methods of shading.
+/// Setting of pipelines that support both methods of shading.
 const SHADING: Key = Key {
     name: "shading",
     about: "phong or gouraud",
@@ -86,7 +86,7 @@ const SHADING: Key = Key {
     sets: &[],
 };
 
-/// Returns the value of the key [`SHADING`] for a method of shading.
+/// Returns the value of the setting [`SHADING`] for a method of shading.
 fn shading_value(shading: Shading) -> KeyValue {
     KeyValue::Name(SHADINGS[usize::from(shading == SHADINGS[1].1)].0)
 }
@@ -97,8 +97,8 @@ fn shading_or(settings: &PipelineSettings, default: Shading) -> Shading {
     given.map_or(default, |(_, shading)| *shading)
 }
 
-/// Returns the times of a picture that a swap shows and that has a view of its own. `stages` must be in order of
-/// pictures. Returns `None` before the picture's TRANSFORM.
+/// Returns the times of a picture that has its own view and that is shown by a swap. `stages` must be sorted by
+/// picture. Returns `None` before the picture's TRANSFORM.
 fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let first = stages.partition_point(|span| span.picture < picture);
     let own = stages[first..].iter().take_while(|span| span.picture == picture);
@@ -114,7 +114,7 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
     })
 }
 
-/// Returns the marks of the stage SAMPLE, at which a board took the newest view for drawing.
+/// Returns the time stamps of the stage SAMPLE, at which a board took the newest view for drawing.
 fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }

@@ -23,13 +23,15 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// Treatment of a finished region whose frame buffer is not available.
+    /// Action of a renderer with a finished region whose frame buffer is not available yet.
     pub finished: FinishedRegions,
 }
 
-/// Treatment of a renderer whose region is finished while the frame buffer is not available. TR94 says that the last
-/// slave returns the token, and that the master assigns the renderer to the next region. The copy command comes later
-/// if the frame buffer was not available. TR94 does not say whether the renderer gets the next region before that.
+/// Action of a renderer with a finished region whose frame buffer is not available yet.
+///
+/// TR94 says that the last slave returns the token, and that the master assigns the renderer to the next region. The
+/// copy command comes later if the frame buffer was not available. TR94 does not say if the renderer gets the next
+/// region before this copy command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FinishedRegions {
     /// The region stays in pixel memory, and the renderer waits for the copy.
@@ -40,10 +42,10 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All treatments, the default first.
+    /// All actions. The first one is the default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
-    /// Returns the name of the treatment in experiment files.
+    /// Returns the name of the action in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -53,7 +55,7 @@ impl FinishedRegions {
     }
 
     /// Returns the number of finished regions that a renderer stores while the frame buffer is not available. `room` is
-    /// the capacity of its backing store in regions.
+    /// the capacity of the renderer's backing store in regions.
     #[must_use]
     pub const fn stored(self, room: u64) -> u64 {
         match self {
@@ -136,8 +138,8 @@ impl Pipeline for RenderingControl {
         self.shading
     }
 
-    /// Returns `None`: all work is i860 code on every display. Kernels exist for all frames in regions of 128 x 128
-    /// pixels.
+    /// Returns `None`, because all work has i860 code on every display. The code covers all frames in regions of 128 x
+    /// 128 pixels.
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
         None
     }
@@ -176,8 +178,8 @@ impl Pipeline for RenderingControl {
         true
     }
 
-    /// Returns the time for the COPY of all eyes in periods. The eyes are copied one after the other: a stereo pair
-    /// takes 31.2 ms, which is two fields (TR94).
+    /// Returns the time for the COPY of all eyes, in display periods. The eyes are copied one after the other. A stereo
+    /// pair takes 31.2 ms, which is two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let surfaces = record.display().surfaces();
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
@@ -198,20 +200,21 @@ impl Pipeline for RenderingControl {
         arrival.surface.0 as u8
     }
 
-    /// Returns the frame in the displayed buffer. The frame is complete, although the beam may not have scanned all of
-    /// it yet.
+    /// Returns the frame in the displayed buffer. The frame is complete, even if the display's beam has not scanned all
+    /// of it yet.
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         record.display().shown(surface.index())
     }
 }
 
-/// Returns the transfer time of a surface's pixels at its busiest port. Regions are distributed over the ports in turn,
-/// in messages of at most [`MAX_MESSAGE_WORDS`].
+/// Returns the transfer time of a surface's pixels at its busiest port.
+///
+/// Regions are assigned to the ports in turn. Messages have at most [`MAX_MESSAGE_WORDS`] words.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the transfer time of every `ports`-th region of a surface, from the region `first` on.
+/// Returns the transfer time of every `ports`-th region of a surface, starting with the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();

@@ -17,14 +17,14 @@ use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Version of the GP's code. Versions differ in time only.
+/// Version of the graphics processor's code. Versions differ only in simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// Code of the 1994 prototype (TR94).
     Of1994,
     /// Code of 1995 (I3D95).
     Of1995,
-    /// Code that fits the instruction cache and takes a third of the time of the 1994 code (I3D95).
+    /// Code that fits in the instruction cache. It takes a third of the time of the 1994 code (I3D95).
     Optimised,
 }
 
@@ -37,7 +37,7 @@ impl Code {
         }
     }
 
-    /// Returns the i860 code that represents this version at the cycle level.
+    /// Returns the version of i860 code that the cycle level executes for this variant.
     const fn version(self) -> CodeVersion {
         match self {
             Self::Of1994 | Self::Of1995 => CodeVersion::Compiled,
@@ -64,21 +64,21 @@ impl SlatsLighting {
     }
 }
 
-/// The pipeline Slats, which draws one new image every field (TR94, I3D95).
+/// The pipeline Slats, which draws one new image in every field (TR94, I3D95).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slats {
     /// Schedule by which regions are copied.
     pub copy: CopySchedule,
-    /// Choice of the regions that receive the commands of a clump.
+    /// Rule that selects the regions to which a clump (a group of at most 30 triangles) is sent.
     pub binning: RegionBinning,
     /// Source of vertex colours.
     pub lighting: SlatsLighting,
-    /// Version of the code. `None` selects the code of the machine's preset.
+    /// Version of the graphics processor's code. `None` selects the code of the machine's preset.
     pub code: Option<Code>,
 }
 
 impl Slats {
-    /// Creates the prototype with the optimization of COPY (TR94).
+    /// Creates the prototype with split copies, the papers' optimization of COPY (TR94).
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Slats {
         }
     }
 
-    /// Creates the prototype without the optimization of COPY (TR94).
+    /// Creates the prototype with whole copies, without the papers' optimization of COPY (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
@@ -157,7 +157,7 @@ impl Pipeline for Slats {
         }
     }
 
-    /// Sets the times of the selected code. The code changes only the times per primitive.
+    /// Sets the times of the selected code version. The version changes only the times per primitive.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -201,7 +201,7 @@ impl Pipeline for Slats {
             arrivals.entry(arrival.target.picture).or_default().note(arrival);
         }
         let backup = (self.copy == CopySchedule::Backup).then(|| Backup::new(record));
-        // The first GP's samples mark the begin of each picture.
+        // The first GP samples a pose at the begin of each picture.
         let leader = record.ports().gps[0];
         let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
@@ -254,7 +254,7 @@ impl Pipeline for Slats {
         Some(1)
     }
 
-    /// Returns the time span of one field. A field is scanned once, and the next field has the other lines.
+    /// Returns the time span in which one field is lit. Each field is scanned once. The next field has the other lines.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
@@ -274,15 +274,15 @@ impl Pipeline for Slats {
     }
 }
 
-/// Number of retraces after its own within which a late field can be shown under a backup. The number covers two later
-/// retraces of the field's lines.
+/// Largest number of retraces after its own retrace at which a late field can still be shown under a backup. The number
+/// covers two later retraces of the field's lines.
 const LATER_RETRACES: u64 = 4;
 
-/// State of a field's copy.
+/// State of the copy of a field to the display.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
-    /// Arrival time of the last region.
+    /// Arrival time of the last region of the field.
     at: Time,
     top_at: Time,
     buffer: u8,
@@ -312,8 +312,10 @@ impl Backup {
         Self { swaps: [of(0), of(1)] }
     }
 
-    /// Returns the first period, from its own on, in which both eyes' frame buffers show a copied field. Only every
-    /// second period has the field's lines.
+    /// Returns the first period in which both eyes' frame buffers show a copied field, starting with the field's own
+    /// period.
+    ///
+    /// Only every second period has the field's lines.
     fn shown(&self, record: &Record, field: PeriodNumber, copied: &Copied) -> Option<PeriodNumber> {
         let periods = (field.0..=field.0 + LATER_RETRACES).step_by(2).map(PeriodNumber);
         let displays = |swaps: &Vec<(PeriodNumber, u8)>, period: PeriodNumber| {
@@ -326,7 +328,7 @@ impl Backup {
     }
 }
 
-/// Returns the deadline of a region of a field.
+/// Returns the time by which a region of a field must arrive.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);
@@ -340,12 +342,12 @@ const LIGHTINGS: [(&str, SlatsLighting); 2] =
     [("precomputed", SlatsLighting::Precomputed), ("gp", SlatsLighting::OnGp)];
 const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 
-/// Returns the name of a choice.
+/// Returns the name of a value in a list of choices.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
     KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
 }
 
-/// Returns the choice with a name.
+/// Returns the value that has a given name in a list of choices.
 fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
     choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
 }
@@ -400,8 +402,10 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     })
 }
 
-/// Returns the criterion for the largest scene. If clumps go to all regions, full-screen triangles are the test. If
-/// clumps go to touched regions only, small triangles are the fair test.
+/// Returns the criterion by which the largest scene is found.
+///
+/// If clumps go to all regions, the test scene has full-screen triangles. If clumps go only to touched regions, the
+/// test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

@@ -31,26 +31,26 @@ pub struct ChartAxes {
 /// A point with the confidence interval of its vertical value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPoint {
-    /// Horizontal and vertical value. If either is NaN, the point is not drawn and a line is interrupted.
+    /// Horizontal and vertical value. If either value is NaN, the point is not drawn and a line has a gap.
     pub at: (f64, f64),
-    /// Lower and upper end of the interval. NaN stands for no interval.
+    /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
 }
 
-/// Style in which the points of a series are drawn.
+/// The style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeriesStyle {
-    /// A line through the points, in their order.
+    /// A line that joins the points in their given order.
     Line,
-    /// A line with a mark at each point. The intervals form a band.
+    /// A line with a marker at each point. The confidence intervals form a band.
     Band,
-    /// A mark at each point, without a line. Each interval is a vertical line.
+    /// A marker at each point, without a line. Each confidence interval is a vertical line.
     Points,
-    /// As [`SeriesStyle::Points`], with hollow marks.
+    /// Like [`SeriesStyle::Points`], with hollow markers.
     HollowPoints,
 }
 
-/// A series of points with a name.
+/// A named series of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartSeries {
     /// Name in the legend.
@@ -64,9 +64,9 @@ pub struct ChartSeries {
 /// Size of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChartSize {
-    /// Size for a screen: 960 x 480 pixels, text of 12 pixels, legend on the right.
+    /// Size for a screen: 960 x 480 pixels, text height of 12 pixels, legend on the right.
     Screen,
-    /// Size for a column of a paper: text of 7.5 points, legend below the chart.
+    /// Size for a column of a paper: text height of 7.5 points, legend below the chart.
     Column {
         /// Width of the chart in millimetres.
         width_mm: f64,
@@ -88,26 +88,26 @@ pub struct Chart {
     pub size: ChartSize,
 }
 
-/// Lengths of a drawing in whole units, which are fine enough to hide the rounding.
+/// Lengths of a drawing as integers, in units so small that rounding is invisible.
 #[derive(Clone, Copy, Debug)]
 struct Measures {
     width: u32,
     height: u32,
-    /// Height of text.
+    /// Height of text, in drawing units.
     em: u32,
-    /// Width, height and unit that the SVG file states.
+    /// Width, height and their unit, as written in the SVG file.
     outer: (f64, f64, &'static str),
     names_below: bool,
 }
 
-/// Number of drawing units in a pixel.
+/// Number of drawing units per pixel.
 const UNITS_A_PIXEL: u32 = 10;
 const UNITS_A_MM: f64 = 40.0;
-/// Height of text in a paper's column: 7.5 points of 25.4/72 mm.
+/// Height of text in a paper's column, in millimetres: 7.5 points of 25.4/72 mm.
 const COLUMN_EM_MM: f64 = 7.5 * 25.4 / 72.0;
 /// Ratio of height to width of a chart in a column, without the legend.
 const COLUMN_HEIGHT: f64 = 0.66;
-/// Height of a line of the legend.
+/// Height of a line of the legend, relative to the height of text.
 const NAME_HEIGHT_EM: f64 = 1.4;
 const NAMES_A_LINE: usize = 2;
 
@@ -217,7 +217,7 @@ struct Placed {
     interval: Option<(f64, f64)>,
 }
 
-/// Splits points into runs without gaps. Points without a position end a run.
+/// Splits points into runs without gaps. A point without a position (NaN) ends a run.
 fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
     let placed = |point: &ChartPoint| {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));
@@ -272,7 +272,7 @@ fn draw_series<'a>(
     Ok(())
 }
 
-/// Draws the legend entry of a series: a sample and the name.
+/// Draws the legend entry of a series: a sample of its style, and the name.
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;

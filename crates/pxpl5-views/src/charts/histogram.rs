@@ -3,7 +3,7 @@
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint, line};
 
-/// Width of the chart in its own units.
+/// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
 /// Space on the left of the bars.
@@ -11,12 +11,12 @@ const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
-/// Vertical position of the foot of the bars, from the top.
+/// Vertical position of the lower end of the bars, measured from the top.
 const FLOOR: f64 = HEIGHT - BOTTOM;
 
 /// Number of bars of a histogram.
 const BINS: usize = 24;
-/// Width of a bar with the gap behind it.
+/// Distance from one bar to the next: the width of a bar and of the gap.
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
 
 /// Returns a histogram of latencies in milliseconds, as SVG for a page.
@@ -45,12 +45,12 @@ pub(crate) fn histogram_element(values_ms: &[f64]) -> Element {
     svg.child(&anchored(LEFT - 6.0, FLOOR, "end").text(0))
 }
 
-/// Returns the left edge of a bar.
+/// Returns the horizontal position of a bar's left edge.
 fn place_of(bin: usize) -> f64 {
     LEFT + STEP * bin as f64
 }
 
-/// Counts of values in equal parts of their range.
+/// Numbers of values in equal intervals of their range.
 struct Bins {
     begin: f64,
     width: f64,
@@ -58,7 +58,7 @@ struct Bins {
 }
 
 impl Bins {
-    /// Counts values. If all values are equal, they lie in the middle bin.
+    /// Counts values by interval. If all values are equal, they lie in the middle interval.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::MAX, f64::min);
         let high = values.iter().copied().fold(f64::MIN, f64::max);

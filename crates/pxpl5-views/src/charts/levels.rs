@@ -3,19 +3,21 @@
 use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use super::scale::AxisScale;
 
-/// Speed and error of a way to simulate.
+/// Speed and error of one way to simulate, such as a level of modelling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedAndError {
-    /// Name beside the mark, such as the name of a level of modelling.
+    /// Name beside the marker, such as the name of a level of modelling.
     pub name: String,
-    /// Simulated fields per second of the host's time.
+    /// Number of simulated fields per second of real time on the host.
     pub fields_per_host_second: f64,
-    /// Mean absolute error, in per cent, of the figures that are free checks.
+    /// Mean absolute error over the published figures that were not used to fit parameters (free checks), in per cent.
     pub mean_error_percent: f64,
 }
 
-/// Returns an SVG chart of simulated fields per host second, in powers of ten, against the mean error of the free
-/// checks. A line joins the best entries: no other entry is both faster and more accurate.
+/// Returns an SVG chart of simulated fields per host second, on a logarithmic axis, against the mean error.
+///
+/// The error covers the published figures that were not used to fit parameters. A line joins the best entries: no other
+/// entry is both faster and more accurate.
 #[must_use]
 pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
@@ -32,13 +34,13 @@ fn series_of(level: &SpeedAndError) -> ChartSeries {
     ChartSeries { name, points: vec![point_of(level)], look: SeriesStyle::Points }
 }
 
-/// Returns the position of an entry. Speeds below one field a second are drawn at one.
+/// Returns the chart position of an entry. Speeds below one field per second are drawn at one.
 const fn point_of(level: &SpeedAndError) -> ChartPoint {
     let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
     ChartPoint { at, interval: (f64::NAN, f64::NAN) }
 }
 
-/// Returns the line through the best entries, from the fastest on. Returns `None` for fewer than two.
+/// Returns the line through the best entries, starting with the fastest. Returns `None` for fewer than two entries.
 fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
     let mut sorted: Vec<&SpeedAndError> = levels.iter().collect();
     sorted.sort_by(|a, b| {

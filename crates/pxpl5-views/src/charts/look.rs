@@ -1,4 +1,4 @@
-//! Colours, dashes and marks that distinguish the series of a chart.
+//! Colours, dashes and markers that distinguish the series of a chart.
 
 use plotters::backend::DrawingBackend;
 use plotters::coord::CoordTranslate;
@@ -6,32 +6,32 @@ use plotters::drawing::{DrawingArea, DrawingAreaErrorKind};
 use plotters::element::{Circle, Cross, TriangleMarker};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 
-/// Colours that are distinguishable with any colour vision (Okabe and Ito 2008, with a darker yellow). Further series
-/// have dashed lines.
+/// Colours that are distinguishable with any colour vision (Okabe and Ito 2008, with a darker yellow). If a chart has
+/// more series, their lines are dashed.
 const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2, 0xd5_5e00, 0xcc_79a7, 0xb8_a900];
 
 /// Lengths of dashes and gaps, in tenths of the height of text.
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
-/// Colour, dashes and mark of a series.
+/// Colour, dashes and marker of a series.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     place: usize,
     pub(super) colour: RGBColor,
-    /// Height of text in units of the drawing.
+    /// Height of text in drawing units.
     pub(super) em: u32,
-    /// True for a series whose mark is a wide ring.
+    /// True for a series whose marker is a wide ring.
     is_hollow: bool,
 }
 
 impl Look {
-    /// Returns the look of the series with an index, from 0.
+    /// Returns the look of the series with the index `place`, counted from 0.
     pub(super) fn of(place: usize, em: u32) -> Self {
         let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
         Self { place, colour: RGBColor(red, green, blue), em, is_hollow: false }
     }
 
-    /// Returns the look with a hollow mark.
+    /// Returns the same look, with a hollow marker if `is_hollow` is true.
     pub(super) const fn hollow(self, is_hollow: bool) -> Self {
         Self { is_hollow, ..self }
     }
@@ -46,7 +46,7 @@ impl Look {
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws the mark of the series: a disc, a triangle, a cross or a ring, in turn.
+    /// Draws the marker of the series. The shapes in turn are a disc, a triangle, a cross and a ring.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

@@ -3,7 +3,7 @@
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint};
 
-/// Width of the chart in its own units.
+/// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 76.0;
 const MARGIN: f64 = 4.0;
@@ -11,11 +11,11 @@ const MARGIN: f64 = 4.0;
 /// Mean of one part of the latency of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanPart {
-    /// Name, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
+    /// Name of the part, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
     pub name: String,
     /// Mean duration of the part over all pictures, in milliseconds.
     pub mean_ms: f64,
-    /// True if the part belongs to the latency that the papers state.
+    /// True if the latency stated in the papers includes this part.
     pub published: bool,
 }
 
@@ -32,8 +32,9 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
     }
 }
 
-/// Returns the mean parts of the latency as a single bar, as SVG for a page. A frame marks the parts that the papers
-/// count. The text is empty if the sum of the parts is not positive.
+/// Returns a single bar with the mean parts of the latency, as SVG for a page.
+///
+/// A frame marks the parts that the papers count as latency. The text is empty if the sum of the parts is not positive.
 #[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
     part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
@@ -70,7 +71,8 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 
-/// Horizontal range in chart units, from the left edge of the first published part to the right edge of the last.
+/// Horizontal range of the frame in chart units, from the left edge of the first published part to the right edge of
+/// the last.
 struct Frame {
     from: f64,
     to: f64,

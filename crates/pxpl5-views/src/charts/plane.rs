@@ -1,9 +1,9 @@
-//! Charts of comparisons for a screen: curves, and points with intervals.
+//! Charts for a screen that compare results: curves, and points with confidence intervals.
 
 use super::chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use super::scale::AxisScale;
 
-/// A named curve. The points are joined in their order. A point with NaN interrupts the line.
+/// A named curve. The points are joined in their order. A point with NaN leaves a gap in the line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Name in the legend.
@@ -19,9 +19,9 @@ pub struct MarkedPoint {
     pub name: String,
     /// Horizontal and vertical value. If either is NaN, the point is not drawn.
     pub at: (f64, f64),
-    /// Lower and upper end of the interval. NaN stands for no interval.
+    /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow mark: a value that cannot be compared with the others.
+    /// True for a hollow marker. It shows that the value cannot be compared with the others.
     pub is_hollow: bool,
 }
 
@@ -31,14 +31,14 @@ pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::FromZero, curves.iter().map(of_curve).collect())
 }
 
-/// Returns an SVG chart of curves with a legend. The vertical axis is in powers of ten. Values that are not positive
-/// interrupt the line.
+/// Returns an SVG chart of curves with a legend. The vertical axis is logarithmic. Zero and negative values leave gaps
+/// in the line.
 #[must_use]
 pub fn decade_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     on_screen(axes, AxisScale::Decades, curves.iter().map(of_curve).collect())
 }
 
-/// Returns an SVG chart of points with intervals and a legend. Both axes begin at 0.
+/// Returns an SVG chart of points with confidence intervals and a legend. Both axes begin at 0.
 #[must_use]
 pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
     on_screen(axes, AxisScale::FromZero, points.iter().map(of_point).collect())

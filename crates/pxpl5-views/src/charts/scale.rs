@@ -9,11 +9,11 @@ use std::ops::Range;
 pub enum AxisScale {
     /// Linear scale from 0 to the greatest number.
     FromZero,
-    /// Linear scale from the least number to the greatest.
+    /// Linear scale from the smallest number to the greatest.
     Fitted,
-    /// Scale in powers of ten. Numbers that are not positive have no position.
+    /// Logarithmic scale in powers of ten. Zero and negative numbers have no position.
     Decades,
-    /// Scale with one step for each name. The first name has number 0.
+    /// Scale with one position for each name. The first name has position 0.
     Names(Vec<String>),
 }
 
@@ -21,7 +21,7 @@ pub enum AxisScale {
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     scale: AxisScale,
-    /// Ends of the range: exponents of ten on an axis of decades, numbers on other axes.
+    /// Ends of the range: exponents of ten on a logarithmic axis, plain values on any other axis.
     pub(super) ends: (f64, f64),
 }
 
@@ -66,7 +66,7 @@ impl Axis {
         }
     }
 
-    /// Returns the label of a tick mark.
+    /// Returns the label of the tick mark at a position.
     pub(super) fn label(&self, place: f64) -> String {
         match &self.scale {
             AxisScale::Decades => 10f64.powi(place as i32).to_string(),
@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// Makes the axis available to plotters. Its values are positions.
+/// Makes the axis usable in the crate `plotters`, with positions as values.
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
@@ -95,7 +95,7 @@ impl Ranged for Axis {
     }
 }
 
-/// Extends a range by a twentieth of its length on both sides. A range without length is extended too.
+/// Extends a range by a twentieth of its length on both sides. A range of length zero is extended too.
 fn widened(low: f64, high: f64) -> (f64, f64) {
     let room = if high > low { (high - low) / 20.0 } else { (high.abs() / 10.0).max(1e-9) };
     (low - room, high + room)

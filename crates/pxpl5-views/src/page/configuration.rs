@@ -20,7 +20,8 @@ pub(super) fn speed(report: &Value) -> [Element; 2] {
     [heading("Speed of the emulation"), paragraph(text)]
 }
 
-/// Returns the fields a second of the emulated display, computed from the latency in fields and in milliseconds.
+/// Returns the number of fields per second of the emulated display, computed from the latency in fields and in
+/// milliseconds.
 fn real_time(report: &Value) -> String {
     let fields = number(&report["latency_fields"]["mean"]);
     let ms = number(&report["latency_ms"]["mean"]);
@@ -28,7 +29,8 @@ fn real_time(report: &Value) -> String {
     if rate.is_finite() { format!(" (real time is {rate:.2} fields a second)") } else { String::new() }
 }
 
-/// Returns a table of all single values of the report. The values of the head have a table of their own.
+/// Returns a table of all values of the report that are not lists or statistics. The values of the head have a separate
+/// table.
 pub(super) fn configuration(report: &Value) -> [Element; 2] {
     let values = report.as_object().into_iter().flatten().filter(|(key, _)| *key != "head");
     let rows = values.filter_map(|(key, value)| Some(value_row(key, &shown(value)?)));

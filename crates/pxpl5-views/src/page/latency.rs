@@ -1,4 +1,4 @@
-//! Page section about latency: distribution, parts, and latency from head to light.
+//! Page section about latency: distribution, parts, and the time from the head's pose until the picture is lit.
 
 use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
 use crate::charts::{MeanPart, colour_of_part, histogram_element, part_bar_element};
@@ -25,7 +25,7 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     all
 }
 
-/// Returns a note about the number of pictures in the statistics.
+/// Returns a note that states the number of pictures in the statistics.
 fn of_how_many(n: &Value) -> Option<Element> {
     match n.as_u64()? {
         0 => Some(paragraph("No complete picture was shown after the warm-up, so there is no latency.")),
@@ -33,7 +33,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
     }
 }
 
-/// Returns the counts of due pictures by result, with a prominent line if the scene was too heavy.
+/// Returns the numbers of due pictures by result. If the scene was too heavy, a prominent line says so.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
         let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));
@@ -72,7 +72,7 @@ fn part_row(part: &Value) -> Element {
     ])
 }
 
-/// Returns a square in the colour of a part of the latency.
+/// Returns a small square in the colour of a part of the latency.
 fn swatch(name: &str) -> Element {
     let colour = format!("background:{}", colour_of_part(name));
     Element::new("span").with("class", "swatch").with("style", colour).text("")
@@ -84,7 +84,7 @@ const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
 const PERCENTILES: [&str; 5] = ["mean", "p50", "p90", "p99", "max"];
 
-/// Returns the section about the latency from head to light, for a run with a tracker.
+/// Returns the section about the latency from the head's pose until the picture is lit, for a run with a tracker.
 pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     if head.is_null() {
         return Vec::new();
@@ -92,7 +92,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
     // Reports of older versions have no aim.
     let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
-    // One table has the stages from head to light, and one has the errors.
+    // One table has the stages from the head's pose until the picture is lit, and one has the errors.
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![

@@ -1,9 +1,10 @@
-//! Reader of the values of `pictures.csv` that a page needs.
+//! Reads the values from `pictures.csv` that a page needs.
 
 use csv::{ReaderBuilder, StringRecord};
 
-/// Returns the values of the column `latency_ps` in rows that are `steady`, in milliseconds. Returns nothing for a file
-/// without these columns.
+/// Returns the values of the column `latency_ps` in milliseconds, from the rows that are `steady` (after start-up).
+///
+/// Returns an empty list for a file without these columns.
 #[must_use]
 pub fn latencies_ms(pictures_csv: &str) -> Vec<f64> {
     let mut reader = ReaderBuilder::new().flexible(true).from_reader(pictures_csv.as_bytes());

@@ -2,21 +2,21 @@
 
 use serde_json::Value;
 
-/// One experiment of a page.
+/// One experiment on a page.
 #[derive(Clone, Debug, Default)]
 pub struct PageRun {
     /// Heading of the experiment.
     pub name: String,
-    /// Report, as in `report.json` (schema `pxpl5-report/2`).
+    /// Report of the experiment, as in `report.json` (schema `pxpl5-report/2`).
     pub report: Value,
-    /// Comparison with a published value: `quantity`, `published`, `error_percent` and `source`. Null if no published
-    /// value exists.
+    /// Comparison with a published value: `quantity`, `published`, `error_percent` and `source`. Null if the papers
+    /// give no value.
     pub published: Value,
-    /// Pictures that the viewer sees at the end, by surface.
+    /// Pictures that the viewer sees at the end of the run, by surface.
     pub pictures: Vec<PagePicture>,
     /// Timeline as SVG.
     pub timeline: Option<Vec<u8>>,
-    /// Latency of each picture after the warm-up, in milliseconds. [`latencies_ms`](super::latencies_ms) reads these
+    /// Latency of each picture after start-up, in milliseconds. [`latencies_ms`](super::latencies_ms) reads these
     /// values from `pictures.csv`.
     pub latencies_ms: Vec<f64>,
 }

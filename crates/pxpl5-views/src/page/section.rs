@@ -9,7 +9,8 @@ use crate::markup::Element;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// Returns the sections of an experiment. Each section stays together in print: pictures, latencies, and the rest.
+/// Returns the three sections of an experiment: pictures, latencies, and the rest. In print, each section stays
+/// together.
 pub(super) fn sections(run: &PageRun) -> [Element; 3] {
     [seen(run), timed(run), told(run)]
 }

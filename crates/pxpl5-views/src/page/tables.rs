@@ -6,13 +6,13 @@ use super::section::image;
 use super::values::{cell, heading, number_cell, paragraph, row, table};
 use crate::markup::Element;
 
-/// A table of results with texts, charts and pictures. If the table has no columns, the page shows only the texts,
-/// charts and pictures.
+/// A table of results with texts, charts and pictures. If the table has no columns, the page omits the table and shows
+/// the rest.
 #[derive(Clone, Debug, Default)]
 pub struct PageTable {
     /// Heading of the table.
     pub name: String,
-    /// Description of the table, one string a paragraph.
+    /// Description of the table, with one string per paragraph.
     pub about: Vec<String>,
     /// Names of the columns.
     pub columns: Vec<String>,
@@ -48,7 +48,7 @@ fn section(of: &PageTable) -> Element {
     section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(figures))
 }
 
-/// Returns a cell. Numbers are aligned to the right.
+/// Returns a table cell with a text. Numbers are aligned to the right.
 fn shown(text: &str) -> Element {
     if text == "-" || text.parse::<f64>().is_ok() { number_cell(text) } else { cell(text) }
 }

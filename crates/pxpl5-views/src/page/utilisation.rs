@@ -1,17 +1,17 @@
-//! How busy each board was, and what the latency waited for.
+//! Page section about the share of time for which each board was busy, and about the waits in the latency.
 
 use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
 use crate::markup::Element;
 use serde_json::Value;
 
-/// Returns the elements for a report, or none for a report of an older version.
+/// Returns the section for a report. The result is empty for a report of an older version without these values.
 pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     let mut all = boards(&report["utilisation"]);
     all.extend(path(&report["critical_path"]));
     all
 }
 
-/// A kind of board: its name, the numbers of all boards, and what else is told of it.
+/// A kind of board: its title, the report keys of its shares, and the keys and labels of further shares.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [

@@ -19,7 +19,7 @@ pub(super) fn known(value: &Value) -> String {
     if value.is_null() { "-".to_owned() } else { plain(value) }
 }
 
-/// Returns a value as text. A string has no quotes.
+/// Returns a value as text. Strings are returned without quotes.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

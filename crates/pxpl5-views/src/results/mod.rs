@@ -1,12 +1,13 @@
-//! Results as tables, with a row for each picture that was shown. The formats are CSV and, with the feature `parquet`,
-//! Parquet.
+//! Results as tables, with one row for each picture that was begun. The formats are CSV and, with the feature
+//! `parquet`, Parquet.
 //!
-//! The origin of a file ([`origin`]) tells how to make the file again. For CSV, the origin is in `report.json` and
+//! The origin of a file ([`origin`]) states how to reproduce the file. For CSV, the origin is in `report.json` and
 //! `experiment.toml` beside the file. For Parquet, it is in the key-value metadata (keys `pxpl5.machine` and so on).
-//! All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] is the schema. Its name and
-//! version are in [`SCHEMA`].
+//! All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] returns the schema. Its name
+//! and version are in [`SCHEMA`].
 //!
-//! [`csv_table`] writes every CSV file. [`quantities_csv`] is the table of the measured quantities of an experiment.
+//! [`csv_table`] writes every CSV file. [`quantities_csv`] returns the table of the measured quantities of an
+//! experiment.
 
 mod csv_file;
 mod origin;

@@ -1,4 +1,4 @@
-//! Origin of a result file, by which the file can be made again.
+//! Origin of a result file: the facts from which the file can be reproduced.
 
 use pxpl5_measure::Report;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Returns the origin of a report as text. Each line begins with a comment mark such as `# `.
+/// Returns the origin of a report as text. Each line begins with `mark`, a comment marker such as `# `.
 #[must_use]
 pub fn origin_lines(report: &Report, mark: &str) -> String {
     let mut text = String::new();
@@ -35,7 +35,7 @@ pub fn origin_lines(report: &Report, mark: &str) -> String {
     text
 }
 
-/// Returns a count with the singular or plural of a noun: `1 triangle`, `2 triangles`.
+/// Returns a count with the singular or plural form of a noun: `1 triangle`, `2 triangles`.
 pub(crate) fn count_of(count: usize, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }

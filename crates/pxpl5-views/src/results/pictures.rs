@@ -1,17 +1,17 @@
-//! The table of pictures.
+//! The table with one row for each picture.
 
 use pxpl5_measure::{LATENCY_PARTS, LatencyParts, latency_parts};
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Name and version of the table's schema. A new column at the end does not change the version.
+/// Name and version of the table's schema. Adding a column at the end does not change the version.
 pub const SCHEMA: &str = "pxpl5-pictures/2";
 
-/// A column of the table. The values are whole numbers, some of which may be missing.
+/// A column of the table. The values are whole numbers, and some of them may be missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Name with the unit.
+    /// Name of the column, with the unit.
     pub name: String,
     /// Definition of the values, in a sentence.
     pub definition: String,
@@ -29,7 +29,7 @@ impl Column {
     }
 }
 
-/// Returns the columns in order: those of [`PictureTimes`], then the parts of [`LATENCY_PARTS`].
+/// Returns the columns in order: first the fields of [`PictureTimes`], then the parts in [`LATENCY_PARTS`].
 #[must_use]
 pub fn columns() -> Vec<Column> {
     // Identity, state and times of a picture come first.
@@ -65,8 +65,8 @@ pub fn columns() -> Vec<Column> {
     columns
 }
 
-/// Returns the rows, one for each begun picture. Each row has a value for each of [`columns`], or `None` for a missing
-/// one.
+/// Returns the rows, one for each picture that was begun. Each row has one value per column ([`columns`]), or `None`
+/// for a missing value.
 #[must_use]
 pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =

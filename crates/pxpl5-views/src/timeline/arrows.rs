@@ -1,4 +1,4 @@
-//! Dependencies of one picture, from the tracker's sample to light.
+//! Dependencies between the stages of one picture, from the sample of the pose until the picture is lit.
 
 use super::model::{Arrow, Bar, DrawingPlace, Timeline};
 use pxpl5_display::Display;
@@ -7,7 +7,7 @@ use pxpl5_run::PictureTimes;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 
-/// Returns the arrows of the chosen picture.
+/// Returns the dependencies of the chosen picture as arrows.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
     let Some(chosen) = chosen else { return Vec::new() };
     let bars = located(timeline);
@@ -27,7 +27,7 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     arrows
 }
 
-/// A bar with its position.
+/// A bar of a timeline with its row and lane.
 #[derive(Clone, Copy)]
 struct Located<'a> {
     place: DrawingPlace,
@@ -50,8 +50,10 @@ fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
     Some(Arrow { from: DrawingPlace::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
 }
 
-/// Returns the bar on which another bar depends. Usually this is the stage before, of the same surface if that stage
-/// has surfaces. The second surface's TRANSFORM depends on the first one's. A bottom half depends on the top half.
+/// Returns the bar on which another bar depends. Usually this is the previous stage of the same surface.
+///
+/// If the previous stage has no surfaces, its only bar is used. The second surface's TRANSFORM depends on the first
+/// surface's TRANSFORM. The bottom half of a picture depends on the top half.
 fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
     if sibling.is_some() {
@@ -67,13 +69,13 @@ fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
 }
 
-/// Returns the first bar of a stage that concerns a surface.
+/// Returns the first bar of a stage that works for a surface.
 fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
     let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if work for one surface concerns another surface. `None` stands for all surfaces.
+/// Returns true if work for one surface also concerns another surface. `None` stands for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -86,8 +88,10 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
     }
 }
 
-/// Returns the arrow between two bars. If the later stage begins before the end of the earlier one, only part of the
-/// earlier stage is needed, and the arrow is vertical.
+/// Returns the arrow between two bars.
+///
+/// The later stage may begin before the end of the earlier stage, because it needs only part of it. The arrow is then
+/// vertical.
 fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     let from = earlier.place;
     let to = later.place;
@@ -97,8 +101,9 @@ fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     Arrow { from, begin: earlier.bar.end.min(later.bar.begin), to, end: later.bar.begin }
 }
 
-/// Returns the time at which the first copied pixel lights. If no swap shows the picture, returns the time at which the
-/// part that represents the picture lights.
+/// Returns the time at which the first copied pixel is lit.
+///
+/// If no swap shows the picture, returns the time at which the part that defines the picture's times is lit.
 fn light(display: &dyn Display, chosen: &PictureTimes, bar: &Bar) -> Time {
     let period = display.period_at(chosen.shown_at);
     let surface = bar.surface.map_or(0, SurfaceId::index);

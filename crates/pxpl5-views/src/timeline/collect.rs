@@ -12,20 +12,20 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Divisor of the drawn time. Bars that overlap by less than this fraction share a lane.
+/// Bars share a lane if they overlap by less than the drawn time divided by this number.
 const TOUCHING: u64 = 300;
 
-/// Smallest number of periods in a drawing without an explicit number.
+/// Smallest number of display periods in a drawing, if the user gives no number.
 const LEAST_FIELDS: u64 = 4;
 
 impl Timeline {
-    /// Returns the part of a run that the options select.
+    /// Returns a timeline of the part of a run that the options select.
     #[must_use]
     pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
         Self::so_far(&outcome.so_far(), options)
     }
 
-    /// Returns the selected part of a run that may still be going on.
+    /// Returns a timeline of the selected part of a run that has ended or is in progress.
     #[must_use]
     pub fn so_far(run: &SoFar<'_>, options: &TimelineOptions) -> Self {
         let record = run.record();
@@ -79,7 +79,7 @@ fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> 
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
 
-/// Returns the periods of the first display that are drawn.
+/// Returns the periods of the first display that the timeline shows.
 fn periods(
     run: &SoFar<'_>,
     options: &TimelineOptions,

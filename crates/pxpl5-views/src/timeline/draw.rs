@@ -7,39 +7,39 @@ use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
 use pxpl5_sim::{Span, Time};
 
-/// Width of the document.
+/// Width of the document, in SVG units.
 const WIDTH: i64 = 960;
 const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
-/// Height of the space above the rows.
+/// Height of the space above the rows, in SVG units.
 const HEAD: i64 = 84;
 const LANE: i64 = 34;
 const GAP: i64 = 18;
-/// Height of the row of samples.
+/// Height of the row for sampled poses, in SVG units.
 const TRACKER: i64 = 14;
 const FOOT: i64 = 84;
-/// Height of the strip that shows when a port receives data.
+/// Height of the narrow bar that shows when a port receives data, in SVG units.
 const STRIP: i64 = 6;
 const SHOWN: i64 = 18;
 
-/// Number of periods from which on the word `field` is left out of the axis, because space is short.
+/// Number of periods from which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
 /// A timeline with the vertical positions of its parts.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
-    /// Top of the tracker's row.
+    /// Vertical position of the top of the tracker's row.
     tracker: i64,
     rows: Vec<i64>,
     beam: i64,
 }
 
-/// Texts around a timeline.
+/// Texts around a timeline: title and origin.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
-    /// Facts by which the drawing can be made again, one a line.
+    /// Facts from which the drawing can be reproduced, one per line.
     pub(super) origin: String,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Returns the horizontal position of a time, limited to the time axis.
+    /// Returns the horizontal position of a time, limited to the range of the time axis.
     fn x(&self, time: Time) -> Units {
         let Timeline { from, to, .. } = self.timeline;
         let all = (*to - *from).0;
@@ -147,7 +147,8 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
-    /// Draws the pictures that a port shows, from swap to swap, below the data that it receives.
+    /// Draws the pictures that a port shows, each from its swap to the next swap, below the data that the port
+    /// receives.
     fn shown(&mut self, row: &TimelineRow, top: i64) {
         let y = Units::whole(top + LANE * row.lanes as i64);
         for shown in &row.shown {
@@ -180,7 +181,7 @@ impl<'a> Drawing<'a> {
         let class = format!("{stage} {stage}-{} {emphasis}", pattern(bar.surface));
         let about = hint(about(bar, self.timeline));
         self.out.add_line(&rectangle(&class, [x, y, width, Units::whole(LANE)]).child(&about));
-        // A dark strip at the foot of a COPY shows when data arrives.
+        // A narrow dark bar at the foot of a COPY shows when data arrives.
         for (begin, end) in &bar.receiving {
             let x = self.x(*begin);
             let strip = [x, y + Units::whole(LANE - STRIP), self.x(*end) - x, Units::whole(STRIP)];
@@ -194,7 +195,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws the label of a bar: letters and number, letters only, or nothing, as the width of the bar permits.
+    /// Draws the label of a bar. Depending on the width of the bar, the label has letters and number, only letters, or
+    /// is left out.
     fn label(&mut self, bar: &Bar, y: Units) {
         let begin = self.x(bar.begin).0;
         let end = self.x(bar.end).0;
@@ -207,7 +209,7 @@ impl<'a> Drawing<'a> {
         if room < short {
             return;
         }
-        // The label moves up to make room for the strip.
+        // The label moves up to make room for this narrow bar.
         let strip = if bar.receiving.is_empty() { 0 } else { STRIP / 2 };
         let place = [Units(begin.midpoint(end)), y + Units::whole(LANE / 2 + 5 - strip)];
         let mut label = caption(&format!("label {}-text", class_of(bar.stage)), place).text(letters);
@@ -236,7 +238,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws the path of the beam in a period, and the number of the displayed picture.
+    /// Draws the path of the display's beam in a period, and the number of the displayed picture.
     fn scan(&mut self, scan: &Scan) {
         let x = self.x(scan.begin);
         let end = self.x(scan.end);

@@ -6,7 +6,7 @@ use crate::markup::Element;
 use crate::svg::{Units, caption, rectangle, segment};
 use pxpl5_display::Surface;
 
-/// Draws a legend of two lines. `x` and `y` are the left end of the first line's foot.
+/// Draws a legend of two lines. `x` and `y` are the left end of the first line's baseline.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {
     let mut first = Line { out, x, y };
     for (stage, title) in STAGES.iter().filter(|(stage, _)| timeline.bars().any(|bar| bar.stage == *stage)) {
@@ -32,7 +32,7 @@ fn second_line(mut line: Line<'_>, timeline: &Timeline) {
     line.stroke("beam", "beam");
 }
 
-/// Adds the samples of surfaces. The first surface is plain, and all others are hatched.
+/// Adds the samples of surfaces. The sample of the first surface is plain, and all others are hatched.
 fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     match surfaces {
         [first, second] => {

@@ -1,8 +1,8 @@
-//! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8). Each independent
-//! resource has a row, and time runs to the right. Retraces and the dependencies of one picture are marked.
+//! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8).
 //!
-//! [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends on simulated time only, so it
-//! is the same on every host.
+//! Each independent resource has a row, and time runs to the right. Retraces and the dependencies of one picture are
+//! drawn too. [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends only on simulated
+//! time, so it is the same on every host.
 //!
 //! | row | bars |
 //! |---|---|
@@ -10,9 +10,9 @@
 //! | host | SEND |
 //! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last one that ends |
 //! | renderers | RENDER: commands to the renderers, until the last is accepted |
-//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark while the port receives data |
+//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the narrow bar below is dark while the port receives data |
 //! | each port of a display that has more ports than surfaces (a display memory) | COPY as above; below it the picture that the port shows, from a swap to the next |
-//! | beam | the displayed picture, from the first light of a period to the last, with the position of the beam |
+//! | beam | the displayed picture, from the first lit pixel of a period to the last, with the position of the beam |
 //!
 //! If bars of one row overlap in time, the row has several lanes.
 
@@ -34,7 +34,8 @@ use draw::Words;
 use pxpl5_measure::Report;
 use pxpl5_run::{Outcome, SoFar};
 
-/// Draws a run as an SVG document, 960 units wide. For a run without pictures, the document shows the first periods.
+/// Draws a run as an SVG document, 960 units wide. For a run without pictures, the document shows the first display
+/// periods.
 #[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     let report = Report::of(outcome);
@@ -47,7 +48,7 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     draw::document(&Timeline::of(outcome, options), &words)
 }
 
-/// Draws a run that may still be going on, without title and texts.
+/// Draws a run that has ended or is in progress, without title and texts.
 #[must_use]
 pub fn drawing(run: &SoFar<'_>, options: &TimelineOptions) -> String {
     let title = options.title.clone().unwrap_or_default();

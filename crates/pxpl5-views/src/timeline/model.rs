@@ -11,27 +11,27 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 pub struct Bar {
     /// Stage of the work.
     pub stage: Stage,
-    /// Number of the picture. If the host sends views independently of pictures, the bar of a SEND has the number of
-    /// the view.
+    /// Number of the picture. If the host sends views independently of pictures, a bar of SEND has the view's number
+    /// instead.
     pub picture: PictureNumber,
-    /// Surface of a stage that works on one surface at a time. `None` if the display has only one surface.
+    /// Surface for which the stage works. `None` for work on all surfaces, or if the display has only one surface.
     pub surface: Option<SurfaceId>,
     /// True for the bottom half of a picture whose halves are copied separately, false for the top half. `None` for a
     /// whole picture.
     pub bottom: Option<bool>,
     /// First line of the surface that a bottom half fills, otherwise 0.
     pub first_line: u32,
-    /// Time at which the first board began the work.
+    /// Time at which the first board began this work.
     pub begin: Time,
-    /// Time at which the last board ended the work. For a stage that did not end, the end of the run.
+    /// Time at which the last board ended this work. For a stage that did not end, the end of the run.
     pub end: Time,
-    /// Lane of the bar in its row, from the top.
+    /// Index of the bar's lane in its row, counted from the top.
     pub lane: usize,
-    /// Time spans in which a port received data, for COPY.
+    /// For COPY: time spans in which the port received data.
     pub receiving: Vec<(Time, Time)>,
 }
 
-/// A row of a timeline, for a resource that works independently.
+/// A row of a timeline, for a resource that works independently of the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
     /// Name on the left of the row.
@@ -40,31 +40,31 @@ pub struct TimelineRow {
     pub bars: Vec<Bar>,
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
-    /// Pictures that the port of this row showed. Empty for rows other than ports with their own swaps.
+    /// Pictures that the port of this row showed. Empty unless the row belongs to a port that swaps independently.
     pub shown: Vec<ShownPicture>,
 }
 
-/// A scan of the first display's first surface, which lights in one period.
+/// The scan of the first display's first surface in one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scan {
     /// Period of the scan. For NTSC, the period is a field.
     pub period: PeriodNumber,
-    /// Picture that is displayed in the period.
+    /// Picture that is displayed in this period, if any.
     pub picture: Option<PictureNumber>,
-    /// Time at which the first visible pixel lights.
+    /// Time at which the first visible pixel is lit.
     pub begin: Time,
-    /// Time at which the last visible pixel lights.
+    /// Time at which the last visible pixel is lit.
     pub end: Time,
 }
 
-/// Part of a run as a timeline.
+/// A part of a run, as a timeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Timeline {
     /// Begin of the timeline, which is a retrace.
     pub from: Time,
     /// End of the timeline, which is a retrace.
     pub to: Time,
-    /// Retraces of the first display, each with the number of the period that it begins.
+    /// Retraces of the first display, each with the period that begins at the retrace.
     pub retraces: Vec<(PeriodNumber, Time)>,
     /// Sampled poses, each with the number of its picture or view. `None` if samples are not drawn.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
@@ -76,9 +76,9 @@ pub struct Timeline {
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND that supplied the view of this picture.
+    /// Number of the SEND that supplied the view of the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
-    /// Dependencies of this picture.
+    /// Dependencies of the picture in the field `picture`.
     pub arrows: Vec<Arrow>,
 }
 
@@ -96,20 +96,20 @@ impl Timeline {
     }
 }
 
-/// A dependency, drawn as an arrow: one event was necessary for another.
+/// A dependency, drawn as an arrow: the first event was necessary for the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrow {
-    /// Row and lane of the necessary event.
+    /// Row and lane of the first event.
     pub from: DrawingPlace,
-    /// Time of the necessary event.
+    /// Time of the first event.
     pub begin: Time,
-    /// Row and lane of the dependent event.
+    /// Row and lane of the second event.
     pub to: DrawingPlace,
-    /// Time of the dependent event.
+    /// Time of the second event.
     pub end: Time,
 }
 
-/// Place in a drawing, by its row.
+/// A row of a drawing, with the lane if it is a row of boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
     /// The row of the tracker.

@@ -1,4 +1,4 @@
-//! Rows of a timeline: the work of each board or kind of board.
+//! Rows of a timeline, each with the work of one board or of all boards of a kind.
 
 use super::model::{Bar, TimelineRow};
 use super::options::TimelineOptions;
@@ -10,7 +10,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Returns all rows of a run, from the host to the last surface.
+/// Returns all rows of a run, from the host's row to the row of the last surface.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -30,7 +30,7 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// Returns the row of a port with its own swaps: the data that it received and the pictures that it showed.
+/// Returns the row of a port that swaps independently: the data that it received and the pictures that it showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -60,11 +60,11 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// Copies by picture and part of the picture.
+/// Copies to a display, by picture and by part of the picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
-/// Returns the COPY of each picture to a surface or a port. A picture has two bars if it arrived in two parts, one
-/// after the other.
+/// Returns the COPY bars of a surface or a port. A picture has one bar, or two if it arrived in two parts, one after
+/// the other.
 fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let message = run.record().message_span();
     let mut parts = Parts::new();
@@ -97,7 +97,7 @@ fn copy_bar(record: &Record, arrival: &Arrival, begin: Time) -> Bar {
     }
 }
 
-/// Returns the first line of the surface that a region fills. The picture may have fewer lines than the surface.
+/// Returns the first line of a surface that a region fills. The picture may have fewer lines than the surface.
 fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     let grid = &arrival.target.grid;
     let [_, top, _, _] = grid.rectangle(arrival.target.region);
@@ -105,7 +105,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Marks the bars that are halves of a picture. A picture has halves if the surface received both.
+/// Labels the bars that are halves of a picture. A picture has halves if the surface received both of them.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
@@ -118,7 +118,7 @@ fn name_halves(parts: &mut Parts) {
     }
 }
 
-/// Largest gap between transfers that are drawn as one. The gap is less than a tenth of a unit.
+/// Largest gap between two transfers that are drawn as one bar. The gap is less than a tenth of an SVG unit.
 const JOINED: Span = Span(20_000_000);
 
 fn join(times: &mut Vec<(Time, Time)>) {
@@ -133,7 +133,7 @@ fn join(times: &mut Vec<(Time, Time)>) {
     *times = joined;
 }
 
-/// Assigns each bar of a row to the first free lane.
+/// Assigns each bar of a row to the first lane that is free at its time.
 pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {

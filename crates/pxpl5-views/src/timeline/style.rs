@@ -7,7 +7,7 @@ use pxpl5_gp::Stage;
 use pxpl5_wire::SurfaceId;
 use std::fmt::Write;
 
-/// Colours of a stage. The dark one is legible as text and hatching on white.
+/// Colours of a stage. The dark colour is legible as text and as hatching on white.
 struct Colours {
     light: &'static str,
     dark: &'static str,
@@ -22,8 +22,8 @@ pub(super) const STAGES: [(Stage, &str); 5] = [
     (Stage::Copy, "COPY"),
 ];
 
-/// Returns the colours of a stage. The hues are distinct for common kinds of colour blindness, and in grey by their
-/// lightness.
+/// Returns the colours of a stage. Their hues can be distinguished with common kinds of colour blindness. In grey,
+/// their lightness differs.
 const fn colours(stage: Stage) -> Colours {
     match stage {
         Stage::Send => Colours { light: "#d9d9d9", dark: "#4d4d4d" },
@@ -34,7 +34,7 @@ const fn colours(stage: Stage) -> Colours {
     }
 }
 
-/// Returns the name of a stage in classes of the style sheet.
+/// Returns the name of a stage for class names in the style sheet.
 pub(super) const fn class_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Send => "send",
@@ -47,11 +47,11 @@ pub(super) const fn class_of(stage: Stage) -> &'static str {
     }
 }
 
-/// Suffix of the class for work on the first surface or on all surfaces.
+/// Suffix of the CSS class for work on the first surface or on all surfaces.
 const PLAIN: &str = "plain";
 const HATCHED: &str = "right";
 
-/// Returns the class suffix of the pattern for work on a surface.
+/// Returns the suffix of the CSS class whose pattern shows the surface of the work.
 pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     match surface {
         Some(SurfaceId(0)) | None => PLAIN,
@@ -59,8 +59,9 @@ pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     }
 }
 
-/// Returns the letters of a bar as in the papers: E, TL, TR, RL, RR, CL or CR. A half that is copied separately has an
-/// additional `t` or `b`.
+/// Returns the letters of a bar as in the papers: E, TL, TR, RL, RR, CL or CR.
+///
+/// A half of a picture that is copied separately has an additional `t` (top) or `b` (bottom).
 pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     let stage = match bar.stage {
         Stage::Send => "S",
@@ -99,7 +100,7 @@ pub(super) fn style() -> Element {
     Element::new("style").text(text)
 }
 
-/// Class of the plain sample in the legend.
+/// CSS class of the legend's sample for the first surface, which has no pattern.
 pub(super) const PLAIN_SURFACE: &str = "left-eye";
 pub(super) const HATCHED_SURFACE: &str = "right-eye";
 

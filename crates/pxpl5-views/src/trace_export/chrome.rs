@@ -5,7 +5,7 @@ use pxpl5_sim::Time;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
-/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one event a line, and the origin in `otherData`.
+/// Writes a trace as Chrome's JSON: an object with `traceEvents`, one event per line, and the origin in `otherData`.
 ///
 /// # Errors
 ///
@@ -22,8 +22,7 @@ pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     out.flush()
 }
 
-/// Returns a time in microseconds as text with six decimals. The text is exact, whereas a number of a JSON library
-/// would be rounded.
+/// Returns a time in microseconds as text with six decimals. The text is exact. A JSON library would round the number.
 fn us(ps: u64) -> String {
     format!("{}.{:06}", ps / 1_000_000, ps % 1_000_000)
 }
@@ -39,7 +38,7 @@ fn names(trace: &Trace) -> Vec<String> {
     groups.chain(tracks).map(|event| event.to_string()).collect()
 }
 
-/// Returns an event as JSON. `rest` contains additional members.
+/// Returns an event as JSON. `rest` contains additional JSON members.
 fn event(place: &str, kind: &str, time: Time, name: &str, rest: &str) -> String {
     format!(r#"{{"name":{},"ph":"{kind}","ts":{},{place}{rest}}}"#, json!(name), us(time.0))
 }

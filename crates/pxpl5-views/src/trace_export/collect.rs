@@ -51,7 +51,7 @@ impl Trace {
         self.tracks.push(Track { group, name: name.to_owned(), events });
     }
 
-    /// Adds the stages of a board and the messages at its port.
+    /// Adds the stages of a board and the messages at the board's ring port.
     fn port(&mut self, outcome: &Outcome, groups: &[Group], group: usize, node: NodeId) {
         self.stages(outcome, group, node);
         if display_ports(outcome.record()).iter().any(|port| port.node == node) {
@@ -62,7 +62,7 @@ impl Trace {
         self.fifo(outcome.record(), traffic, group, node);
     }
 
-    /// Adds the data that a port with its own swaps received, and the pictures that it showed.
+    /// Adds the data received by a port that swaps independently, and the pictures that the port showed.
     fn memory(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
         let message = outcome.record().message_span();
         let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
@@ -81,7 +81,7 @@ impl Trace {
         self.track(group, "shown", Events::Slices(slices.collect()));
     }
 
-    /// Adds the stages that a board has marked. A stage without an end is left out.
+    /// Adds the stages for which a board has set time stamps. A stage without an end is left out.
     fn stages(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
         let mut begun: BTreeMap<(Stage, PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
         let mut slices: BTreeMap<Stage, Vec<Slice>> = BTreeMap::new();
@@ -154,7 +154,7 @@ impl Trace {
     }
 }
 
-/// Returns the slice of a stage that has ended.
+/// Returns the slice of a stage from its begin to the time stamp of its end.
 fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
     let surface = mark.surface.and_then(|id| record.surface(id));
     stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])

@@ -1,4 +1,4 @@
-//! Flow of each picture from SEND to the first period that shows the picture.
+//! Flow arrows of each picture, from SEND to the first period that shows the picture.
 
 use super::model::{Events, Flow, Slice, Step, Trace};
 use super::slices::stage_name;
@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Position of a slice: its begin, its track and its index in the track.
+/// Position of a slice: its begin time, its track and its index in the track.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     begin: Time,
@@ -35,8 +35,8 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     }
 }
 
-/// Returns the first slices of some stages, by picture. Each name of a slice counts separately, so each surface has its
-/// own.
+/// Returns the first slices of the given stages, by picture. Each name of a slice counts separately, so each surface
+/// has its own first slice.
 fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
     let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();

@@ -4,8 +4,9 @@ use pxpl5_display::{Display, Surface};
 use pxpl5_machine::Record;
 use pxpl5_wire::{NodeId, SurfaceId};
 
-/// A group of tracks with a heading. The group stands for a board at a port of the ring, for a surface of a display, or
-/// for both in one, such as a frame buffer.
+/// A group of tracks with a heading. It stands for a board at a port of the ring or for a surface of a display.
+///
+/// A frame buffer is both a board and a surface, and has one group.
 pub(super) struct Group {
     pub(super) name: String,
     pub(super) node: Option<NodeId>,
@@ -36,7 +37,7 @@ fn numbered(name: &str, nodes: &[NodeId]) -> impl Iterator<Item = Group> {
     nodes.iter().enumerate().map(move |(i, node)| Group::of_port(format!("{name} {i}"), *node))
 }
 
-/// Returns the groups of a display. A surface with a port of its own forms one group with the port.
+/// Returns the groups of a display. If a surface has its own port, surface and port form one group.
 fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &Surface)]) -> Vec<Group> {
     let nodes = display.nodes();
     let paired = nodes.len() == surfaces.len();
@@ -51,7 +52,8 @@ fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &S
     groups
 }
 
-/// Returns a name that belongs to a display. If the machine has several displays, the name contains the display's name.
+/// Returns a name for a group or track of a display. If the machine has several displays, the name includes the
+/// display's name.
 pub(super) fn named(record: &Record, name: &str, display: &dyn Display) -> String {
     if record.displays().len() == 1 { name.to_owned() } else { format!("{name}, {}", display.name()) }
 }

@@ -6,7 +6,7 @@ use pxpl5_wire::PictureNumber;
 /// A run as a set of tracks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// Origin, by which the trace can be made again, as pairs of key and value.
+    /// Origin of the trace, from which it can be reproduced, as pairs of key and value.
     pub origin: Vec<(&'static str, String)>,
     /// Names of the groups: boards, surfaces and others.
     pub groups: Vec<String>,
@@ -14,7 +14,7 @@ pub struct Trace {
     pub tracks: Vec<Track>,
 }
 
-/// A line of a trace with its events.
+/// A named line of a trace viewer, with its events.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
     /// Index of the track's group.
@@ -25,14 +25,14 @@ pub struct Track {
     pub events: Events,
 }
 
-/// Events of a track.
+/// The events of a track. All of them have the same kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Events {
     /// Slices that do not overlap.
     Slices(Vec<Slice>),
     /// Instants with their names.
     Instants(Vec<(Time, String)>),
-    /// Values of a counter. Each value holds from its time on.
+    /// Values of a counter. Each value is valid from its time until the next value.
     Counter(Vec<(Time, i64)>),
 }
 
@@ -45,22 +45,22 @@ pub struct Slice {
     pub begin: Time,
     /// Time at which the slice ends.
     pub end: Time,
-    /// Frame, field or update to which the slice belongs.
+    /// Number of the frame, field or update to which the slice belongs.
     pub picture: Option<PictureNumber>,
-    /// Position in a flow, or `None`.
+    /// Position of the slice in a flow, a chain of arrows between slices. `None` if the slice is not in a flow.
     pub flow: Option<Flow>,
 }
 
-/// Position of a slice in the flow of a picture.
+/// Position of a slice in the flow of a picture, the chain of arrows from SEND to the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flow {
     /// Number of the flow, which is the picture's number plus 1.
     pub id: u64,
-    /// Step of the flow.
+    /// Position of the slice among the slices of the flow.
     pub step: Step,
 }
 
-/// Step of a flow.
+/// Position of a slice among the slices of a flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// First slice of the flow.

@@ -5,7 +5,7 @@ use super::protobuf::Message;
 use pxpl5_sim::Time;
 use std::io::{self, Write};
 
-/// Field numbers and enumerators of the published `.proto` files.
+/// Field numbers and enumerators from the published `.proto` files.
 mod proto {
     pub(super) const TRACE_PACKET: u32 = 1;
     pub(super) const PACKET_TIMESTAMP: u32 = 8;
@@ -40,7 +40,7 @@ mod proto {
 }
 use proto::*;
 
-/// Identifier of the sequence of packets. A trace has a single writer.
+/// Identifier of the sequence of packets. One number suffices, because a trace has a single writer.
 const SEQUENCE: u64 = 1;
 
 /// Writes a trace in the Perfetto format.
@@ -75,7 +75,8 @@ const fn ns(time: Time) -> u64 {
     time.0 / 1_000
 }
 
-/// Returns the identifier of a group's track. Groups come first. Zero is not a valid identifier.
+/// Returns the identifier of a group's track. Tracks of groups have the lowest identifiers. Zero is not a valid
+/// identifier.
 const fn group_uuid(group: usize) -> u64 {
     group as u64 + 1
 }
@@ -119,7 +120,7 @@ fn track_descriptor(trace: &Trace, number: usize, track: &Track) -> Message {
     }
 }
 
-/// Returns an event of a kind on a track.
+/// Returns an event of the given kind on a track.
 fn event(kind: u64, track: u64) -> Message {
     Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
 }

@@ -1,6 +1,6 @@
-//! Encoder for the wire types of Protocol Buffers that a trace needs.
+//! An encoder for Protocol Buffers, limited to the wire types that a trace needs.
 
-/// An encoded message during writing.
+/// An encoded message that is being written.
 #[derive(Debug, Default)]
 pub(super) struct Message(pub(super) Vec<u8>);
 
@@ -17,14 +17,14 @@ impl Message {
         self.raw(u64::from(field) << 3 | wire_type);
     }
 
-    /// Appends an unsigned number or an enumerator.
+    /// Appends a field with an unsigned number or an enumerator.
     pub(super) fn number(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 0);
         self.raw(value);
         self
     }
 
-    /// Appends eight bytes, the least significant first.
+    /// Appends a field of eight bytes, with the least significant byte first.
     pub(super) fn fixed64(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 1);
         self.0.extend(value.to_le_bytes());

@@ -6,7 +6,7 @@ use pxpl5_machine::{Arrival, Transfer};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 
-/// Returns the name of a stage, in the papers' words.
+/// Returns the name of a stage as used in the papers.
 pub(super) const fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::Sample => "SAMPLE",
@@ -32,7 +32,8 @@ pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
     Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
 }
 
-/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one of its messages.
+/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one message of the
+/// region.
 pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     Slice {
         name: format!("COPY region {}", arrival.target.region.0),
@@ -43,7 +44,7 @@ pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     }
 }
 
-/// Sorts slices by time. A slice that overlaps the previous one begins at its end.
+/// Sorts slices by time. A slice that overlaps the previous slice is shortened to begin at the previous slice's end.
 pub(super) fn apart(slices: impl Iterator<Item = Slice>) -> Vec<Slice> {
     let mut slices: Vec<Slice> = slices.collect();
     slices.sort_by_key(|slice| (slice.end, slice.begin));
