@@ -54,9 +54,9 @@ const PRIMITIVE: f64 = 200.0;
 const TARGET: f64 = 3.125;
 /// Memory in bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;
-/// Number of pixels that surfaces touch in each column of each slice. An average that replaces the shape of the scene.
+/// Estimated number of pixels in each column of a slice that surfaces touch.
 const ROWS: f64 = 2.0;
-/// Number of additional pixels that surfaces touch, summed over all slices, in units of one whole picture.
+/// Estimated number of further pixels that surfaces touch, over all slices together, in units of one whole picture.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;

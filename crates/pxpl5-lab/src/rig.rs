@@ -1,15 +1,15 @@
-//! The pendulum rig in front of the emulated machine, which measures latency from outside and compares the result
+//! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and
-//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is
-//! not full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives
-//! the line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats,
-//! switches the line when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and light,
+//! and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not full,
+//! and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the line,
+//! so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the line
+//! when it samples the pose of a frame.
 //!
-//! The oscilloscope's traces do not use the pipeline's own records of its pictures. The low points come from the
-//! pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from the
-//! board that starts the frame. The pipeline's records give the inside measurement.
+//! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
+//! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
+//! the board that starts the frame. The pipeline's records give the system's own time stamps.
 
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;

@@ -273,8 +273,8 @@ impl ErrorSpread {
     }
 }
 
-/// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. A percentile is the smallest number
-/// that the given share of numbers does not exceed.
+/// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. Percentile p is the smallest number
+/// that is at least as large as p % of all numbers.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
     // Position of the smallest number that the given percentage does not exceed.

@@ -1,4 +1,4 @@
-//! The recorded measurement of the levels of modelling, as a file.
+//! A measurement of all levels of modelling (speed and error), stored in a file.
 
 use pxpl5_run::{Level, Pixels};
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Name and version of the record's JSON layout.
 pub const SCHEMA: &str = "pxpl5-levels/2";
 
-/// Measurement of all levels, with date and host. Missing values are null.
+/// Measurement of all levels of modelling, with date and host. Missing values are null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
     /// Name and version of the JSON layout.

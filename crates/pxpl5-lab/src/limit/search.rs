@@ -166,7 +166,7 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns the limit by bisection alone, as a hint for the search with another model.
+/// Returns the limit found by bisection alone, as a hint for the search with another model.
 ///
 /// # Errors
 ///
@@ -178,7 +178,7 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the sizes to try below a result: consecutive ones, doubtful ones, and some at distances that double.
+/// Returns the sizes to try below a found limit: consecutive sizes, doubtful sizes, and some at distances that double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
@@ -187,12 +187,12 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// Returns the number of consecutive sizes to try on either side of a result.
+/// Returns the number of consecutive sizes to try on either side of a found limit.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss, as many as below the result.
+/// Returns the sizes to try above the first miss. Their number is the same as below the limit.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;
@@ -252,7 +252,7 @@ mod tests {
     }
 
     proptest! {
-        /// A search ends at the same size for any starting size if no size below the result misses.
+        /// Tests that a search ends at the same size for any starting size, if all sizes above the limit miss.
         #[test]
         fn hints_change_the_number_of_trials_alone(
             limit in 0u32..5_000,
@@ -264,7 +264,7 @@ mod tests {
             prop_assert_eq!((found.triangles, found.first_miss), (limit, Some(limit + 1)));
         }
 
-        /// All sizes in the reported unbroken range reach the goal.
+        /// Tests that all sizes reach the goal from `unbroken_from` up to the result.
         #[test]
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));
