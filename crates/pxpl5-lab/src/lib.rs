@@ -3,7 +3,7 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | values of the published figures in the model, and their intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | the interpretation of the papers that explains the figures best | [`readings`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of modelling | [`levels`] |
