@@ -1,5 +1,5 @@
-//! Limits on the memory and time of a command. A run is refused by an estimate before it starts, or stopped early
-//! when its first fields show that it would exceed a limit.
+//! Limits on the memory and time of a command. A run is refused before it starts if its estimate exceeds a limit. A run
+//! is stopped early if its first fields show that the whole run would exceed a limit.
 
 use crate::error::CliError;
 use crate::estimate::{Estimate, Study, Work};
@@ -31,12 +31,12 @@ const MOST_MEGABYTES: u64 = 16_000;
 /// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which an early run is checked. Later the run is checked whenever it reports
-/// progress.
+/// Numbers of simulated fields after which an early run is compared with its limits. Later this happens whenever the
+/// run reports progress.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
-/// Seconds that a run must have taken before its total time is extrapolated. In the first seconds, pipelines fill and
-/// caches are cold.
+/// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because
+/// pipelines fill and caches are cold.
 const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 
 /// Bytes that a run must have allocated before its total memory is extrapolated.
@@ -49,8 +49,8 @@ pub(crate) struct Watch {
     fields: u64,
     begun: Instant,
     bytes_before: Option<f64>,
-    /// Fields simulated at the first check, and the time and memory used until then. Work before a run, such as a dry
-    /// run or the tuning of a predictor, occurs once and must not be extrapolated per field.
+    /// State at the first check: number of fields simulated, and the time and memory used. Work before a run, such as a
+    /// dry run or the tuning of a predictor, occurs once and must not be extrapolated per field.
     first: OnceCell<(u64, Taken)>,
 }
 
@@ -60,7 +60,7 @@ impl BudgetArgs {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }
 
-    /// Refuses a run before it starts if its estimate exceeds the budget.
+    /// Returns an error if the estimate of a run, before its start, exceeds the budget.
     ///
     /// # Errors
     ///
@@ -69,8 +69,8 @@ impl BudgetArgs {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
-    /// Refuses a set of runs before the first starts. The estimate divides their time over `threads` threads and
-    /// counts the memory of the largest run once for each thread.
+    /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
+    /// time is the sum divided by `threads`. The estimated memory is the memory of the largest run times `threads`.
     ///
     /// # Errors
     ///
@@ -80,17 +80,19 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Refuses a command that simulates a fixed set of experiments before it starts; `advice` says how to make it smaller.
+    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` tells the user how
+    /// to reduce the work.
     ///
     /// # Errors
     ///
-    /// As [`BudgetArgs::admit`].
+    /// Fails in the same cases as [`BudgetArgs::admit`].
     pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         self.admit_estimate(study.estimate(threads), advice)
     }
 
-    /// Refuses a command if `estimate` exceeds the budget. `advice` tells the user how to reduce the work.
+    /// Returns an error if the estimate of a command exceeds the budget. `advice` tells the user how to reduce the
+    /// work.
     ///
     /// # Errors
     ///
@@ -105,14 +107,14 @@ impl BudgetArgs {
         }
     }
 
-    /// Starts to monitor a run of `fields` fields.
+    /// Starts to monitor the time and memory of a run of `fields` display fields.
     pub(crate) fn watch(self, fields: u64) -> Watch {
         Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes(), first: OnceCell::new() }
     }
 }
 
 impl Watch {
-    /// Extrapolates the cost of the whole run from the `done` fields simulated so far.
+    /// Extrapolates the cost of the whole run from the first `done` fields.
     ///
     /// # Errors
     ///
@@ -137,7 +139,7 @@ impl Watch {
     }
 }
 
-/// Seconds and bytes that a part of a run has used.
+/// Seconds and bytes of memory that a run has used so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Taken {
     seconds: f64,
@@ -151,8 +153,8 @@ impl Taken {
 }
 
 impl BudgetArgs {
-    /// Returns the reason to stop a run that used `before` at its start and then `taken` for the fraction `part` of
-    /// its fields. The rest of the fields is assumed to cost the same.
+    /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
+    /// is the cost of the fraction `part` of this part. The remaining fields are assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // Short runs and small ones say too little about the rest.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
@@ -160,7 +162,7 @@ impl BudgetArgs {
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
-    /// Returns an error message if the memory or the time exceeds its limit.
+    /// Returns an error message if the given memory or time exceeds its limit.
     fn excess(&self, megabytes: f64, seconds: f64, advice: &str) -> Option<String> {
         let most = self.max_memory;
         if megabytes > most as f64 {
@@ -177,8 +179,7 @@ impl BudgetArgs {
     }
 }
 
-/// Returns the resident memory of this process in bytes, or `None` if the operating system does not report the
-/// number.
+/// Returns the resident memory of this process in bytes, or `None` if the operating system does not report it.
 fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -37,8 +37,8 @@ impl Default for DemoArgs {
     }
 }
 
-/// Three published measurements that simulate in little time, with the settings of experiments/figure-*.toml. TR94's
-/// trivial scene comes last, because its pictures show only a rectangle.
+/// Experiments of the demo: three published measurements that take little time to simulate, with the settings of
+/// experiments/figure-*.toml. TR94's trivial scene comes last, because its pictures show only a rectangle.
 const EXPERIMENTS: [(&str, &str); 3] = [
     (
         "rendering-control-mig",

@@ -31,16 +31,16 @@ pub(crate) struct DiffArgs {
     json: bool,
 }
 
-/// Difference of two pictures of the same name.
+/// Difference between two pictures of the same file name.
 #[derive(Debug)]
 struct PictureDifference {
     /// Name of the files.
     name: String,
-    /// Width and height of both pictures.
+    /// Width and height in pixels of the first and the second picture.
     sizes: [[u32; 2]; 2],
-    /// Number of pixels that differ. `None` if the pictures differ in size.
+    /// Number of pixels that differ. `None` if the pictures have different sizes.
     differing: Option<u64>,
-    /// Largest difference of a colour, 0 to 255. `None` if the pictures differ in size.
+    /// Largest difference of a colour component, 0 to 255. `None` if the pictures have different sizes.
     largest: Option<u8>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     print(&text(&found, &pictures))
 }
 
-/// Reads the report of a result.
+/// Reads the report of a result: a file, or the report in a folder.
 fn report(path: &Path) -> Result<Value, CliError> {
     let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
     let name = file.display();
@@ -80,14 +80,14 @@ fn report(path: &Path) -> Result<Value, CliError> {
     }
 }
 
-/// Compares the pictures that both folders have.
+/// Compares the pictures whose file names occur in both folders.
 fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
     let [of_a, of_b] = [a, b].map(names);
     let names: Vec<String> = of_a.intersection(&of_b).cloned().collect();
     names.into_iter().map(|name| picture(a, b, name)).collect()
 }
 
-/// Returns the names of a folder's pictures, in order; none of a file.
+/// Returns the file names of the pictures in a folder, sorted. The result is empty for a file.
 fn names(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
@@ -140,7 +140,7 @@ fn text(found: &Differences, pictures: &[PictureDifference]) -> String {
     text
 }
 
-/// A line for a value. Long texts are cut.
+/// Formats the difference of one value as a line. Long texts are shortened.
 fn line(changed: &Changed) -> String {
     let cell = |value: &Option<Value>| match value {
         None | Some(Value::Null) => "-".to_owned(),

@@ -12,10 +12,11 @@ const USAGE: u8 = 2;
 /// Exit code of a valid command that failed.
 const FAILURE: u8 = 1;
 
-/// Exit code when another process holds the folder. The same command may succeed later (`EX_TEMPFAIL` of sysexits.h).
+/// Exit code when another process is writing into the folder. The same command may succeed later (`EX_TEMPFAIL` of
+/// sysexits.h).
 pub(crate) const BUSY: u8 = 75;
 
-/// An error message with an exit code.
+/// An error message for the user, with the exit code of the command.
 #[derive(Debug)]
 pub(crate) struct CliError {
     code: u8,
@@ -97,7 +98,7 @@ impl From<ExperimentError> for CliError {
     }
 }
 
-/// Returns advice for a run that ended with an error.
+/// Returns advice to the user about a run that ended with an error.
 fn advice(error: &ExperimentError) -> &'static str {
     let text = error.to_string();
     if text.contains("bytes") {

@@ -1,16 +1,17 @@
-//! Estimates of memory and time before a command starts. [`pxpl5::lab::estimate`] estimates runs; the formulas here
-//! estimate volumes and walks.
+//! Estimates of memory and time before a command starts. [`pxpl5::lab::estimate`] estimates runs. The formulas here
+//! estimate volumes and walks (frames seen along a path).
 //!
 //! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
 //! primitives` bytes:
 //!
 //! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that surfaces touch.
-//! - `targets` is the number of slices that all threads draw at a time.
+//! - `targets` is the number of slices that all threads together draw at a time.
 //! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
 //!
 //! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
 //!
-//! Renderers of Pixel-Planes 5 take `PLANES` times as long for a volume, and `PLANES_BYTES` more memory.
+//! If simulated renderers of Pixel-Planes 5 draw the volume, it takes `PLANES` times as long and `PLANES_BYTES` more
+//! memory.
 //!
 //! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
 //! FRAME_S frames primitives` seconds.
@@ -22,7 +23,7 @@ pub(crate) use pxpl5::lab::estimate::{Estimate, Study, Work};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
-/// Sizes that determine the memory and time of a volume.
+/// Quantities that determine the memory and time to compute a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VolumeWork {
     pub(crate) slices: u64,
@@ -32,55 +33,55 @@ pub(crate) struct VolumeWork {
     pub(crate) samples: u64,
     pub(crate) primitives: u64,
     pub(crate) threads: u64,
-    /// True if renderers of Pixel-Planes 5 draw the volume.
+    /// True if simulated renderers of Pixel-Planes 5 draw the volume.
     pub(crate) is_pixel_planes: bool,
 }
 
-/// Sizes that determine the memory and time of a walk.
+/// Quantities that determine the memory and time to compute a walk (frames seen along a path).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WalkWork {
     pub(crate) frames: u64,
     pub(crate) primitives: u64,
-    /// Texels along one edge of a cube face.
+    /// Number of texels along one edge of a cube face.
     pub(crate) face_texels: u64,
 }
 
-/// Bytes of the process without any work.
+/// Memory in bytes of the process without any work.
 const BASE: f64 = 15e6;
-/// Bytes of a primitive, including its entries in all lists.
+/// Memory in bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Bytes of a pixel in the buffer of one slice: three colour channels and one stencil bit.
+/// Memory in bytes of a pixel in the buffer of one slice: three colour channels and one stencil bit.
 const TARGET: f64 = 3.125;
-/// Bytes of a pixel that a surface covers, including spare capacity of its list.
+/// Memory in bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;
-/// Number of pixels in each column of a slice that surfaces touch.
+/// Estimated number of pixels in each column of a slice that surfaces touch.
 const ROWS: f64 = 2.0;
-/// Number of whole pictures, summed over all slices, that surfaces touch.
+/// Estimated number of further pixels that surfaces touch, over all slices together, in units of one whole picture.
 const AREAS: f64 = 2.0;
-/// Seconds for one primitive in one slice.
+/// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;
-/// Seconds for one covered pixel.
+/// Seconds to process one covered pixel.
 const DRAWN_S: f64 = 100e-9;
 /// Seconds to pack and read eight pixels.
 const WORD_S: f64 = 1e-9;
 
-/// Slowdown factor when renderers of Pixel-Planes 5 draw.
+/// Factor on the time if simulated renderers of Pixel-Planes 5 draw the volume.
 const PLANES: f64 = 15.0;
-/// Bytes of the pixel arrays of Pixel-Planes 5.
+/// Memory in bytes of the simulated pixel arrays of Pixel-Planes 5.
 const PLANES_BYTES: f64 = 60e6;
 
-/// Bytes of a texel of a cube face.
+/// Memory in bytes of a texel of a cube face.
 const TEXEL: f64 = 10.0;
-/// Bytes of a frame of a walk.
+/// Memory in bytes of a frame of a walk.
 const FRAME: f64 = 3e3;
-/// Bytes of a primitive in the world of a walk.
+/// Memory in bytes of a primitive in the world through which a walk leads.
 const WALKED: f64 = 2e3;
-/// Seconds for one texel of a cube face.
+/// Seconds to process one texel of a cube face.
 const FACE_S: f64 = 15e-9;
-/// Seconds for one primitive in one frame of a walk.
+/// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
-/// Slowdown factor on a computer that is busy with other work. Assumed, as for runs.
+/// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
 const BUSY: f64 = 2.5;
 
 /// Returns the number of triangles and spheres of a scene.
@@ -89,7 +90,7 @@ pub(crate) fn primitives(scene: &Scene) -> u64 {
 }
 
 impl VolumeWork {
-    /// Returns the work of a volume with valid settings, drawn by `threads` threads.
+    /// Returns the work to compute a volume with valid settings, drawn by `threads` threads.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,
@@ -151,8 +152,8 @@ mod tests {
     };
     const MIG: VolumeWork = VolumeWork { primitives: 417, ..PAPER };
 
-    /// Measured volumes: peak memory in MB (`ru_maxrss`) and processor time in seconds (`ru_utime + ru_stime`,
-    /// opt-level 1).
+    /// Measured costs of volumes: the work, the peak memory in MB (`ru_maxrss`), and the processor time in seconds
+    /// (`ru_utime + ru_stime`, opt-level 1).
     const VOLUMES: [(VolumeWork, f64, f64); 9] = [
         (PAPER, 127.4, 0.85),
         (MIG, 36.0, 0.21),
@@ -165,7 +166,8 @@ mod tests {
         (VolumeWork { slices: 198, is_pixel_planes: true, ..MIG }, 97.3, 5.4),
     ];
 
-    /// Volumes to which no constant was fitted, measured with the profile `dist`: molecules, a head, a sphere, the Mig.
+    /// Measured costs of volumes to which no constant was fitted: molecules, a head, a sphere, the test scene "mig".
+    /// Measured with the build profile `dist`.
     const HELD_OUT: [(VolumeWork, f64, f64); 4] = [
         (VolumeWork { primitives: 3_839, ..PAPER }, 178.9, 1.06),
         (VolumeWork { slices: 800, width: 512, height: 512, ..PAPER }, 112.6, 0.52),
@@ -173,7 +175,7 @@ mod tests {
         (VolumeWork { slices: 600, samples: 4, ..MIG }, 48.6, 0.56),
     ];
 
-    /// Measured walks, with the same quantities as [`VOLUMES`].
+    /// Measured costs of walks, with the same quantities as [`VOLUMES`].
     const WALKS: [(WalkWork, f64, f64); 4] = [
         (WalkWork { frames: 120, primitives: 740, face_texels: 512 }, 36.8, 0.05),
         (WalkWork { frames: 1_800, primitives: 740, face_texels: 512 }, 41.6, 0.13),
@@ -181,8 +183,8 @@ mod tests {
         (WalkWork { frames: 60, primitives: 740, face_texels: 2_048 }, 251.2, 0.38),
     ];
 
-    /// The process reserves the bits of dark slices without writing them. An estimate may therefore exceed the
-    /// measured memory, but must not fall much below the measurement.
+    /// Tests the memory estimates. The process reserves the bits of dark slices without writing them. An estimate may
+    /// therefore exceed the measured memory, but must not fall much below the measurement.
     #[test]
     fn memory_of_volumes_and_walks_is_not_underestimated() {
         let volumes =
@@ -204,7 +206,8 @@ mod tests {
         }
     }
 
-    /// The time bounds are wider than above, because the profile `dist` is faster than the builds of [`VOLUMES`].
+    /// Tests the estimates of [`HELD_OUT`]. The time limits are wider than above, because the profile `dist` is faster
+    /// than the builds of [`VOLUMES`].
     #[test]
     fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
         for (work, megabytes, seconds) in HELD_OUT {

@@ -58,11 +58,11 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&figures) } else { text(&figures) })
 }
 
-/// Measures and prints chosen figures of the main table, one after the other.
+/// Measures and prints the chosen figures of the main table, one after the other.
 ///
 /// # Errors
 ///
-/// Fails for a number without a row, and if an experiment fails.
+/// Fails if no figure has the number, or if an experiment fails.
 fn chosen(numbers: &[String]) -> Result<(), CliError> {
     let all = FIGURES.map(|figure| figure.id).join(", ");
     let find = |number: &String| {
@@ -80,7 +80,7 @@ fn chosen(numbers: &[String]) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Checks that a generated document is the one that `subcommand` would write now.
+/// Checks that a generated document on disk equals the text that `subcommand` would write now.
 ///
 /// # Errors
 ///
@@ -117,12 +117,12 @@ fn text(figures: &Figures) -> String {
     text
 }
 
-/// Formats the rows of a family of figures below its title.
+/// Formats the rows of a family of figures (papers about another system) below its title.
 fn of_family(family: &FigureFamily) -> String {
     format!("\n{} ({})\n{}", family.title, family.document, family_rows(&family.rows))
 }
 
-/// Formats the rows of a family of figures, with the number of misses.
+/// Formats the rows of a family of figures (papers about another system), with the number of misses.
 pub(crate) fn family_rows(rows: &[Row]) -> String {
     let mut text = format!(
         "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
@@ -149,10 +149,10 @@ pub(crate) fn family_rows(rows: &[Row]) -> String {
     text
 }
 
-/// Heads of the columns of the main table.
+/// Column headings of the main table.
 const HEADER: &str = "#     published  simulated  unit             error  interval               provenance what\n";
 
-/// Formats the rows of the figures of Pixel-Planes 5.
+/// Formats the rows of the figures about Pixel-Planes 5.
 fn own(rows: &[FigureRow]) -> String {
     rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
 }

@@ -1,14 +1,14 @@
-//! Settings of TOML files as pairs of path and value.
+//! Flattens settings of TOML files into pairs of path and value.
 
 use toml::{Table, Value};
 
-/// Formats a value in the syntax of `--set`.
+/// Formats a TOML value in the syntax of `--set`.
 pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Flattens a table into paths and values. A table with the key `from` is a range and stays a value; every other
-/// table adds a part to the path.
+/// Flattens a table into paths and values. A table with the key `from` is a range and stays one value. The key of any
+/// other table becomes part of the path.
 pub(crate) fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

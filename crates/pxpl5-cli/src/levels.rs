@@ -49,7 +49,7 @@ pub(crate) struct LevelsArgs {
     budget: BudgetArgs,
 }
 
-/// The recorded measurement of the levels, as JSON.
+/// The recorded measurement of the levels of modelling, as JSON.
 const RECORD: &str = include_str!("../../../docs/levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
@@ -80,7 +80,7 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-/// Measures all levels now, and adds today's date and a description of the host.
+/// Measures all levels of modelling now, and adds today's date and a description of the host.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
     args.budget.admit_study(study, "take fewer --experiments")?;
@@ -109,7 +109,7 @@ fn date_of(days: u64) -> String {
     format!("{:04}-{month:02}-{day:02}", year + u64::from(month <= 2))
 }
 
-/// Returns a chart point for each choice of pixels with a measured speed.
+/// Returns one chart point for each choice of pixels whose speed was measured.
 fn points(report: &LevelReport) -> Vec<SpeedAndError> {
     let Some(mean_error_percent) = report.published_error_percent else { return Vec::new() };
     let speeds = report.speeds.iter().filter_map(|speed| {

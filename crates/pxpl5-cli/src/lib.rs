@@ -179,15 +179,15 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
-    /// Returns the lines that begin with the command. Lines that end in a backslash are joined; comments and shell
-    /// variables are replaced.
+    /// Returns the lines of a text that begin with the command `pxpl5`, split into words. Lines that end in a backslash
+    /// are joined. Comments and shell variables are replaced.
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.replace("\\\n", " ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
         lines.map(words).collect()
     }
 
-    /// Returns the words of a line without its explanation.
+    /// Returns the words of a command line, without the explanation behind it.
     fn words(line: &str) -> Vec<String> {
         let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
         // Help texts separate an explanation by three spaces.

@@ -96,7 +96,7 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
-/// Searches over a setting.
+/// Searches for the values of one setting that reach a goal, and prints the result.
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
     let bar = progress(VALUES, "values", args.quiet);
@@ -105,13 +105,13 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
-/// Values that a search over a setting tries: five, and two halvings of 64 steps.
+/// Estimated number of values that such a search tries: five values, and two bisections of 64 steps.
 const VALUES: u64 = 12;
 
-/// Maximum number of sizes that a search simulates: twice the number of halvings of the whole range.
+/// Estimated maximum number of scene sizes that a search simulates: twice the bisection steps of the whole range.
 const SIZES: usize = 40;
 
-/// Minimum number of simulated fields. Shorter runs end within the warm-up of every pipeline.
+/// Minimum number of simulated fields. Shorter runs end during the warm-up of every pipeline.
 const LEAST_FIELDS: u64 = 10;
 
 impl LimitArgs {
@@ -140,7 +140,7 @@ impl LimitArgs {
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
-    /// The search over a setting, with the experiment as it stands at the greatest value.
+    /// Returns the search over the values of a setting, and the plan of the experiment at the greatest value.
     fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
         let mut file = self.file()?;
         if let Some(scene) = self.test_scene() {
@@ -180,12 +180,12 @@ impl LimitArgs {
         Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
     }
 
-    /// Returns the test scene of the papers that `--scene` names, if any.
+    /// Returns the papers' test scene that `--scene` names. `None` if the option names no test scene.
     fn test_scene(&self) -> Option<TestScene> {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// Returns the settings shared by all sizes. Their scene is a placeholder with one triangle unless `--scene`
+    /// Returns the settings shared by all scene sizes. Their scene is a placeholder with one triangle, unless `--scene`
     /// names a model.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
@@ -225,7 +225,7 @@ impl LimitArgs {
     }
 }
 
-/// A goal in words.
+/// Returns a goal in words.
 fn goal_text(goal: Goal) -> String {
     match goal {
         Goal::NoMissedRetrace => "every picture that is due is shown in time".to_owned(),
@@ -305,12 +305,12 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// Returns true where no size missed the goal, up to the most that is tried: the pipeline has no limit.
+/// Returns true if every tried size up to the maximum reached the goal. The pipeline then has no limit.
 const fn is_without(limit: Limit) -> bool {
     limit.first_miss.is_none() && limit.triangles == CEILING
 }
 
-/// Returns the name of the scene drawn at every size.
+/// Returns the name of the scene that is drawn at every size.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }

@@ -1,4 +1,4 @@
-//! The command `pxpl5 merge`, which joins the shards of a sweep.
+//! The command `pxpl5 merge`, which merges the shards of a sweep (parts computed by separate processes).
 
 use crate::error::CliError;
 use crate::numbers::{are, count_of, were};

@@ -18,7 +18,7 @@ pub(crate) fn registry() -> Arc<Registry> {
     Arc::clone(REGISTRY.get_or_init(pxpl5::registry))
 }
 
-/// The pipeline and its keys, as given on the command line.
+/// The name of the pipeline and its keys, as given on the command line.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PipelineOptions {
     /// Keys of the experiment file, each with the text given on the command line.

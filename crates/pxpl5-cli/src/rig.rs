@@ -44,10 +44,10 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Maximum number of fields between two low points: one second.
+/// Maximum number of display fields between two low points of the pendulum: one second.
 const FIELDS_OF_PASS: u64 = 60;
 
-/// Settings that the rig determines itself and does not accept.
+/// Settings that the rig determines itself. The user must not set them.
 const KEYS_SET_BY_RIG: [&str; 8] =
     ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
@@ -71,7 +71,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
-/// Returns the plan with the user's pipeline, machine, tracker and seed, and the rig's own scene and motion.
+/// Returns the plan of the measurement. Pipeline, machine, tracker and seed come from the user, scene and motion from
+/// the rig.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || key.starts_with("motion.")) {
         return Err(CliError::usage(format!(
@@ -83,7 +84,7 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
-/// Name of a latency and the function that reads it from one side of the rig.
+/// Name of a latency, with the function that reads it from the outside or inside measurement.
 type Column = (&'static str, fn(&Side) -> &Latency);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {

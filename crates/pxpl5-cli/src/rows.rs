@@ -1,4 +1,4 @@
-//! Reader of the rows that `pxpl5 sweep` and `pxpl5 compare` write into a results folder.
+//! Reader of the result rows that `pxpl5 sweep` and `pxpl5 compare` write into a folder.
 
 use crate::error::CliError;
 use parameters::text_of;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const COMPARISON_FILE: &str = "comparison.json";
 
-/// A row as names and values in the order of the file.
+/// A row of results as pairs of name and value, in the order of the file.
 pub(crate) type Row = Vec<(String, Value)>;
 
 /// The kind of a results file.
@@ -18,7 +18,7 @@ pub(crate) type Row = Vec<(String, Value)>;
 pub(crate) enum RowsKind {
     /// Results of a sweep, with one row for each point.
     Sweep,
-    /// Results of a comparison, with one row for each pipeline and one value for each JSON path. Lists of plain
+    /// Results of a comparison, with one row for each pipeline. A row has one value for each JSON path. Lists of plain
     /// numbers are left out.
     Comparison,
 }
@@ -27,12 +27,12 @@ pub(crate) enum RowsKind {
 #[derive(Debug)]
 pub(crate) struct ResultRows {
     pub(crate) kind: RowsKind,
-    /// Header of a sweep, or all of a comparison except its rows.
+    /// The header of a sweep, or all of a comparison's JSON except its rows.
     pub(crate) about: Map<String, Value>,
     pub(crate) rows: Vec<Row>,
 }
 
-/// Returns the rows of a folder, or `None` if the folder holds neither a sweep nor a comparison.
+/// Reads the rows of a folder. Returns `None` if the folder holds neither a sweep nor a comparison.
 ///
 /// # Errors
 ///
@@ -62,7 +62,7 @@ pub(crate) fn folder_of(results: &Path) -> &Path {
     folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }
 
-/// Returns the value of a row under a name.
+/// Returns the value with this name in a row.
 pub(crate) fn value<'a>(row: &'a Row, name: &str) -> Option<&'a Value> {
     row.iter().find(|(key, _)| key == name).map(|(_, value)| value)
 }
@@ -88,7 +88,7 @@ fn sweep(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Sweep, about, rows })
 }
 
-/// Returns a row with the point's number, its parameters, the measured values, and the error if the point failed.
+/// Returns a row with the index of the point, its parameters, the measured values, and the error if the point failed.
 fn of_point(mut point: Map<String, Value>) -> Row {
     let mut row = Row::new();
     for key in ["point", "status", "parameters", "measured", "error"] {
@@ -116,7 +116,8 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
 }
 
-/// Adds every plain value with its path to a row. An object of a list is named by its `cause` or `kind`.
+/// Adds every value that is no object or list to a row, under its path. An object in a list is named by its `cause` or
+/// `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
         Value::Object(inner) => {
@@ -134,7 +135,8 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
     }
 }
 
-/// Returns the name of an object in a list. A `cause` of null is the interaction of all causes.
+/// Returns the name of an object in a list. If its `cause` is null, the object stands for the interaction of all
+/// causes.
 fn name_of(value: &Value) -> Option<String> {
     let object = value.as_object()?;
     match object.get("cause").or_else(|| object.get("kind"))? {
@@ -144,7 +146,7 @@ fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// Returns the current name of a comparison column that once had another name.
+/// Returns the current name of a comparison column that has been renamed, or `None`.
 pub(crate) fn renamed(old: &str) -> Option<String> {
     let new = match old {
         "updates_hz" => "updates_hz.mean",

@@ -93,7 +93,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the effect of 10 % more of each resource.
+/// Returns the effect on latency and update rate of 10 % more of each resource.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
     what_if(&plan.registry, &experiment).map_err(CliError::from)
@@ -115,7 +115,7 @@ fn more_text(more: &[WhatIf]) -> String {
     text
 }
 
-/// The report, with what more would bring where that was asked for.
+/// Returns the report as text, followed by the effects of 10 % more of each resource if the user asked for them.
 fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
     let Some(more) = more else { return json(report) };
     let mut value = serde_json::to_value(report).map_err(CliError::failure)?;
@@ -202,7 +202,7 @@ fn known(value: f64, digits: usize) -> String {
     if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
-/// Returns the checked experiment of a file. Refuses sweeps and the analytic level.
+/// Returns the checked experiment of a file. Returns an error for sweeps and for the analytic level.
 fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
     if file.is_sweep() {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
@@ -260,10 +260,10 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
-/// Suffix of the file name of a picture that was not complete in time.
+/// Suffix of the file name for a picture that was not complete in time.
 pub(crate) const INCOMPLETE: &str = "-incomplete";
 
-/// Writes the last displayed picture of every surface. Each file name starts with `prefix`.
+/// Writes the last picture that each surface displayed. Each file name starts with `prefix`.
 pub(crate) fn pictures(
     folder: &mut OutputFolder,
     prefix: &str,

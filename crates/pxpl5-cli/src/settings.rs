@@ -90,7 +90,7 @@ pub(crate) struct SettingArgs {
 }
 
 impl SettingArgs {
-    /// Returns the experiment file with all options applied, `--set` last.
+    /// Returns the experiment file with all options applied. `--set` is applied last.
     ///
     /// # Errors
     ///
@@ -152,8 +152,7 @@ impl SettingArgs {
     }
 }
 
-/// Returns the key that `--display NAME` sets. The names of rasters are accepted for compatibility with earlier
-/// versions, in which `--display` set the raster.
+/// Returns the key that `--display NAME` sets. Names of rasters set the raster instead, as in earlier versions.
 fn display_key(name: Option<&str>) -> &'static str {
     if Raster::ALL.iter().any(|(raster, _)| Some(*raster) == name) { "head.raster" } else { "display" }
 }

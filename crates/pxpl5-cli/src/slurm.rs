@@ -1,17 +1,17 @@
-//! The option `pxpl5 sweep --slurm`, which writes scripts that run a sweep as jobs of Slurm. Nothing is run or
-//! submitted here.
+//! The option `pxpl5 sweep --slurm`, which writes scripts that run a sweep as jobs of Slurm. The option itself neither
+//! runs nor submits jobs.
 //!
 //! ```text
 //!  submit.sh --> array.sh   task I of N: pxpl5 sweep --shard I/N --resume, into OUT/shard-I
 //!           `--> merge.sh   when all tasks have ended: pxpl5 merge OUT/shard-* --out OUT
 //! ```
 //!
-//! Slurm restarts a task after its node was lost. The restarted task resumes with the rows that it finds. If the
-//! earlier task still runs on a node that does not answer, the restarted task waits, because two processes must not
-//! write into one folder.
+//! Slurm restarts a task after its node was lost. The restarted task keeps the rows that the earlier task has written.
+//! If the earlier task still runs on a node that does not answer, the restarted task waits, because two processes must
+//! not write into one folder.
 //!
-//! The requested time and memory follow from estimates of points that are spread evenly over the space
-//! ([`Resources`]).
+//! The scripts request time and memory according to estimates of a sample of points, which are spread evenly over the
+//! parameter space ([`Resources`]).
 
 use crate::error::{BUSY, CliError};
 use crate::estimate::Estimate;
@@ -24,29 +24,29 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub(crate) struct Jobs<'a> {
     pub(crate) file: &'a Path,
-    /// Settings shared by all points.
+    /// Settings shared by all points of the sweep, as `path=value`.
     pub(crate) sets: &'a [String],
-    /// Folder for the joined rows.
+    /// Folder for the merged rows of all tasks.
     pub(crate) out: &'a Path,
-    /// Number of tasks in the array. `None` computes the number from an estimate.
+    /// Number of tasks in the Slurm array. `None` computes the number from an estimate of the work.
     pub(crate) tasks: Option<u64>,
     /// Number of points that a task simulates in parallel.
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. The value is far above the cost of starting a task, and far below the time that the
-/// last task may delay the sweep.
+/// Seconds of work in one task. The value is far above the time to start a task. It is also far below the delay that is
+/// acceptable for the last task.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
-/// Number of points whose cost is estimated.
+/// Number of points of the sweep whose cost is estimated.
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
-/// Safety factor on the time of a task, because Slurm kills a task at its limit. The points of one pipeline together
-/// took at most three times their estimate (docs/sweeps.md, "What a point costs").
+/// Safety factor on the estimated time of a task, because Slurm kills a task at its time limit. The points of one
+/// pipeline together took at most three times their estimate (docs/sweeps.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
-/// Maximum ratio of used to estimated memory (docs/hardening.md).
+/// Safety factor on the estimated memory: the maximum measured ratio of used to estimated memory (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
 /// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
@@ -54,7 +54,7 @@ const MERGE_ROW_S: f64 = 40e-6;
 const MERGE_ROW_BYTES: f64 = 16.0;
 /// Bytes held for the files of one task while merging, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
-/// Bytes of the merging process without rows, rounded up.
+/// Memory in bytes of the merging process without rows, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
 /// Estimated cost of a sample of points of a sweep.
@@ -62,11 +62,11 @@ const MERGE_BYTES: f64 = 50e6;
 struct Sample {
     /// Number of points of the whole sweep.
     points: u64,
-    /// Mean seconds of a point on one core.
+    /// Mean time to simulate a point, in seconds on one core.
     mean_s: f64,
-    /// Maximum seconds of a point on one core.
+    /// Maximum time to simulate a point, in seconds on one core.
     most_s: f64,
-    /// Memory of the largest point, in bytes.
+    /// Largest memory that a point needs, in bytes.
     most_bytes: f64,
 }
 
@@ -75,7 +75,7 @@ struct Sample {
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// Time limit of one task. Fields with the prefix `merge` belong to the job that merges.
+    /// Time limit of one task in minutes. The prefix `merge` marks the same values for the job that merges the rows.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,
@@ -83,7 +83,7 @@ struct Resources {
 }
 
 impl Sample {
-    /// Estimates points that are spread evenly over the space.
+    /// Estimates the cost of points that are spread evenly over the parameter space.
     fn of(sweep: &Sweep) -> Self {
         let points = sweep.space().points();
         let chosen: Vec<u64> = spread(points, SAMPLE).collect();
@@ -98,15 +98,15 @@ impl Sample {
         }
     }
 
-    /// Returns the estimate of the whole sweep on a number of threads.
+    /// Returns the estimated cost of the whole sweep on a number of threads.
     fn whole(self, threads: usize) -> Estimate {
         let threads = threads.max(1) as f64;
         Estimate { bytes: self.most_bytes * threads, seconds: self.mean_s * self.points as f64 / threads }
     }
 }
 
-/// Returns at most `most` distinct point numbers that are spread evenly over every axis. The step is the golden
-/// section of the number of points, increased until both have no common factor.
+/// Returns at most `most` distinct indices of points that are spread evenly over every axis. The step between indices
+/// is the golden section of the number of points, increased until both have no common factor.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);
@@ -118,19 +118,20 @@ const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// Estimates a whole sweep on a number of threads from a sample of its points.
+/// Estimates the cost of a whole sweep on a number of threads from a sample of its points.
 pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
     Sample::of(sweep).whole(threads)
 }
 
 impl Resources {
-    /// Computes the resources by these formulas:
+    /// Computes the time and memory to request by these formulas:
     ///
     /// - tasks: `mean_s points / (threads TASK_S)`, rounded up to a number without a common factor with the number of
-    ///   points, so that every task has its share of every value of every axis
+    ///   points. Every task then has its share of every value of every axis.
     /// - time of a task: `START_S + TIME_MARGIN (mean_s points / (tasks threads) + most_s)`
     /// - memory of a task: `MEMORY_MARGIN threads most_bytes`
-    /// - merging: `START_S + MERGE_ROW_S points`, `MERGE_BYTES + MERGE_ROW_BYTES points + MERGE_TASK_BYTES tasks`
+    /// - time of the merging job: `START_S + MERGE_ROW_S points`
+    /// - memory of the merging job: `MERGE_BYTES + MERGE_ROW_BYTES points + MERGE_TASK_BYTES tasks`
     fn of(sample: Sample, tasks: Option<u64>, threads: u64) -> Self {
         let Sample { points, mean_s, most_s, most_bytes } = sample;
         let work_s = mean_s * points as f64 / threads as f64;
@@ -150,8 +151,8 @@ impl Resources {
     }
 }
 
-/// Returns the smallest number of tasks from `wanted` on that has no common factor with the number of points. Returns
-/// a smaller number if the array would exceed [`MOST_TASKS`].
+/// Returns the smallest number of tasks, at least `wanted`, that has no common factor with the number of points.
+/// Returns a smaller number if the array would exceed [`MOST_TASKS`].
 fn even_tasks(wanted: u64, points: u64) -> u64 {
     let most = MOST_TASKS.min(points).max(1);
     let wanted = wanted.clamp(1, most);
@@ -167,7 +168,7 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// Returns the message for the user.
+    /// Returns the message that tells the user which jobs were written and how to submit them.
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(
@@ -281,7 +282,7 @@ echo \"array $array, merging ${{merge%%;*}}\"
     }
 }
 
-/// Quotes a word for a shell.
+/// Quotes a word so that a shell reads it as one argument.
 pub(crate) fn quoted(word: &str) -> String {
     let is_plain = word.chars().all(|c| c.is_alphanumeric() || "-_./=:,".contains(c)) && !word.is_empty();
     if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
@@ -294,8 +295,8 @@ mod tests {
 
     const SAMPLED: Sample = Sample { points: 20_000, mean_s: 0.9, most_s: 3.0, most_bytes: 40e6 };
 
-    /// 20,000 points of 0.9 s are 18,000 s: 20 tasks of 900 s on one thread. The next number without a common factor
-    /// with 20,000 = 2^5 5^4 is 21.
+    /// Tests the formulas. 20,000 points of 0.9 s are 18,000 s: 20 tasks of 900 s on one thread. The next number
+    /// without a common factor with 20,000 = 2^5 5^4 is 21.
     #[test]
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);

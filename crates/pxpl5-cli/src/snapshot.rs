@@ -1,4 +1,4 @@
-//! Execution of an experiment with its budget, and saving and restoring of snapshots.
+//! Executes an experiment within its budget, and saves and restores snapshots.
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
@@ -31,7 +31,7 @@ pub(crate) struct SnapshotArgs {
     restore: Option<PathBuf>,
 }
 
-/// Options of an execution that do not change its result.
+/// Options for executing an experiment that do not change its result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
@@ -44,7 +44,7 @@ pub(crate) struct How<'a> {
     pub(crate) quiet: bool,
 }
 
-/// The outcome of a run, with an error if the run was too short for statistics.
+/// The outcome of a run. If the run was too short for statistics, the error is stored too.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -68,7 +68,7 @@ impl Simulated {
         }
     }
 
-    /// Returns the outcome of a run that must be long enough for statistics.
+    /// Returns the outcome of the run, if it was long enough for statistics.
     ///
     /// # Errors
     ///
@@ -78,11 +78,12 @@ impl Simulated {
     }
 }
 
-/// Prefixes of keys that a command may set when it restores a snapshot. The snapshot determines all others.
+/// Prefixes of the keys that a command may set when it restores a snapshot. The snapshot determines all other keys.
 const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// Returns the experiment of the snapshot with the given settings applied, or `given` if no snapshot is restored.
+    /// Returns the experiment of the snapshot, changed by the given settings. Returns `given` if no snapshot is
+    /// restored.
     ///
     /// # Errors
     ///
@@ -108,7 +109,7 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan, and saves or restores a snapshot on the way.
+    /// Simulates the plan. Saves or restores a snapshot at its field, if an option requests this.
     ///
     /// # Errors
     ///
@@ -157,7 +158,7 @@ impl SnapshotArgs {
         Ok(simulated)
     }
 
-    /// Opens the file of `--save` and checks that the field lies within the run.
+    /// Opens the file of `--save`, and checks that the field of `--save-at` lies within the run.
     fn saving(&self, plan: &Plan) -> Result<Option<OutputFile>, CliError> {
         let (Some(field), Some(path)) = (self.save_at, &self.save) else { return Ok(None) };
         if !(1..plan.fields).contains(&field) {

@@ -99,7 +99,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 }
 
 impl SweepArgs {
-    /// Refuses a sweep before it starts if its estimate exceeds a given limit.
+    /// Returns an error if the estimate of a sweep, before its start, exceeds a given limit.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
@@ -112,7 +112,7 @@ impl SweepArgs {
     }
 }
 
-/// Writes the scripts of `--slurm` after checking that the sweep is valid.
+/// Checks that the sweep is valid, and writes the scripts of `--slurm`.
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);
@@ -129,11 +129,11 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
     all
 }
 
-/// Exit code of a sweep that Ctrl-C ended: 128 plus the number of the signal, as in shells.
+/// Exit code of a sweep that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
 const INTERRUPTED: i32 = 130;
 
-/// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume. Finished rows are in the file
-/// already.
+/// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume it. Rows of finished points are
+/// already in the file.
 fn install_interrupt_handler(args: &SweepArgs) -> Result<(), CliError> {
     let again = again(args);
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
@@ -145,7 +145,7 @@ fn end_interrupted(again: &str) {
     std::process::exit(INTERRUPTED);
 }
 
-/// Returns the command that resumes this sweep.
+/// Returns the command line that resumes this sweep.
 fn again(args: &SweepArgs) -> String {
     let mut words = vec!["pxpl5 sweep".to_owned(), quoted(&args.file.display().to_string())];
     words.extend(["--out".to_owned(), quoted(&args.out.display().to_string())]);
@@ -159,7 +159,7 @@ fn again(args: &SweepArgs) -> String {
     words.join(" ")
 }
 
-/// Prints the number of failed points of a shard and the error of the first. Returns that number.
+/// Prints the number of failed points of a shard, and the error of the first one. Returns the number of failed points.
 pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {
@@ -170,7 +170,7 @@ pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &st
     Ok(failed)
 }
 
-/// Prints the path of the file of rows.
+/// Prints the number of points and the path of the file of result rows.
 pub(crate) fn report_rows_path(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
     if quiet { Ok(()) } else { print(&format!("{} in {}.\n", are(total, "point"), out.join(ROWS_FILE).display())) }
 }

@@ -3,16 +3,16 @@
 use crate::numbers::count_of;
 use pxpl5::{DuePictures, Report, Statistics};
 
-/// A published value and the simulated value of the same quantity.
+/// A published value, and the simulated value of the same quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
     /// Name of the quantity, with its unit.
     pub(crate) quantity: String,
     /// Value printed in the paper.
     pub(crate) published: f64,
-    /// Value of the run.
+    /// Simulated value of the run.
     pub(crate) simulated: f64,
-    /// The paper, or the paper and its figure.
+    /// Name of the paper, or name of the paper and number of the figure.
     pub(crate) source: String,
 }
 
@@ -22,7 +22,7 @@ impl Comparison {
     }
 }
 
-/// Name of a table row and the function that formats its cell for a run.
+/// Name of a table row, with the function that formats the row's cell for a run.
 type TableRow = (&'static str, fn(&Report) -> String);
 
 const ROWS: [TableRow; 13] = [
@@ -61,7 +61,7 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
     ]
 }
 
-/// Returns a cell for each run, empty for a run without a published value.
+/// Returns a table cell for each run. The cell is empty for a run without a published value.
 fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comparison) -> String) -> Vec<String> {
     runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, &cell)).collect()
 }
@@ -75,12 +75,12 @@ fn ends(report: &Report) -> String {
     of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
 }
 
-/// Returns the range of periods over which all results are computed.
+/// Formats the range of display periods over which all results are computed.
 fn window(report: &Report) -> String {
     report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
-/// Returns "-" for a pipeline whose pictures are never due.
+/// Formats the table cell for due pictures. The cell is "-" for a pipeline whose pictures have no deadlines.
 fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
     report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }
@@ -93,7 +93,7 @@ fn primitives(report: &Report) -> String {
     }
 }
 
-/// Formats mean, standard deviation and count. The mean of no values and the deviation of one value are "-".
+/// Formats mean, standard deviation and number of values. The mean of no values and the deviation of one value are "-".
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
     if s.mean.is_nan() {
         return "-".to_owned();

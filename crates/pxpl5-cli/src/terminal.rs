@@ -1,4 +1,4 @@
-//! Output of results to standard output, and of messages to standard error.
+//! Prints results to standard output, and messages to standard error.
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -40,13 +40,14 @@ pub(crate) fn warn(warnings: &[String], quiet: bool) {
     }
 }
 
-/// Sets the position and length of a progress bar.
+/// Updates a progress bar: `done` of `of` steps are finished.
 pub(crate) fn advance(bar: &ProgressBar, done: u64, of: u64) {
     bar.set_length(of);
     bar.set_position(done);
 }
 
-/// Returns a progress bar with the remaining time. The bar is shown on standard error, and only on a terminal.
+/// Returns a progress bar that shows the remaining time. The bar appears on standard error, and only if this is a
+/// terminal.
 pub(crate) fn progress(total: u64, what: &str, quiet: bool) -> ProgressBar {
     let shown = !quiet && std::io::stderr().is_terminal();
     let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };

@@ -1,4 +1,4 @@
-//! Prediction before a run that no picture will be shown, because the scene is too heavy.
+//! Warning before a run whose scene is too heavy: no picture will be shown in time.
 
 use crate::estimate::Work;
 use crate::numbers::count_of;
@@ -6,13 +6,13 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
-/// Length of a short run, in fields: one second. No warning is given if the pipeline needs no more than this, even in
-/// a shorter run.
+/// Length of a short run in display fields: one second. If a pipeline needs no more fields than this to show a picture,
+/// no warning is given, even for a shorter run.
 const SHORT_RUN: u64 = 60;
 
-/// Returns a warning if a run of `fields` fields is expected to show no picture after the warm-up. The prediction
-/// uses the closed form of the pipeline. Without a closed form, the run is too short if the processors cannot
-/// transform all primitives once.
+/// Returns a warning if a run of `fields` display fields is expected to show no picture after the warm-up. The
+/// pipeline's closed-form formula gives the prediction. Without such a formula, a run is too short if the processors
+/// cannot transform all primitives once.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
     let work = Work::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;

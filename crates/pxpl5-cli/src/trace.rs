@@ -40,14 +40,14 @@ pub(crate) struct TraceArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// Perfetto's protobuf, with times in nanoseconds.
+    /// Perfetto's protobuf format, with times in nanoseconds.
     Perfetto,
-    /// Chrome's JSON, with exact times in microseconds.
+    /// Chrome's JSON format, with exact times in microseconds.
     Chrome,
 }
 
 impl Format {
-    /// Returns the format for a file's extension. Pipes and devices get Perfetto's format.
+    /// Returns the trace format for a file's extension. Pipes and devices get Perfetto's format.
     ///
     /// # Errors
     ///

@@ -1,31 +1,33 @@
 //! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
 //!
-//! The host of a real viewer ran a loop under Unix that read input, changed its model, and asked for the next frame.
-//! The model's host asks for the next frame at once unless `host.application_ns` and `host.application_jitter_ns` are
-//! set. This module varies both parameters and reports the mean and deviation of each figure. Nothing is fitted.
+//! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
+//! The simulated host asks for the next frame at once unless `host.application_ns` and `host.application_jitter_ns` are
+//! set. This module varies both parameters and reports the mean and standard deviation of each figure. Nothing is
+//! fitted.
 //!
-//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is
-//! printed for the fly-throughs, so their application may have taken longer. Here the mean reaches 40 ms, with a
-//! spread of up to the 30 ms in which a Unix host polls its serial lines (TR94). Both ends are assumed.
+//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is printed
+//! for the fly-throughs, so their application may have taken longer. In this module the mean time reaches 40 ms, with a
+//! jitter of up to 30 ms. A Unix host polled its serial lines once in 30 ms (TR94). Both maxima are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 
-/// Parameter path of the application's mean time.
+/// Path of the parameter for the mean time of the application.
 const MEAN: &str = "host.application_ns";
-/// Parameter path of the jitter of the application's time.
+/// Path of the parameter for the jitter of the application's time.
 const JITTER: &str = "host.application_jitter_ns";
 
-/// Means that are simulated, in milliseconds. Assumed: from no application to a loop of 25 frames a second.
+/// Mean times of the application to simulate, in milliseconds. Assumed: from no application to a loop of 25 frames a
+/// second.
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters that are simulated, in milliseconds, for every mean that is at least as long. Assumed: up to the polling
-/// period (TR94).
+/// Jitters of the application's time to simulate, in milliseconds. A jitter is left out for shorter mean times.
+/// Assumed: up to the polling period (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// Figure numbers of the fly-throughs in TR94.
+/// Numbers of the figures in TR94 that show fly-throughs.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of a latency.
@@ -44,14 +46,14 @@ pub struct Spread {
 pub struct ApplicationTime {
     /// Mean time of the application for a frame, in milliseconds.
     pub mean_ms: u64,
-    /// Half width of the uniform distribution around the mean, in milliseconds.
+    /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
     /// Latencies of figures 7, 7b and 7c.
     pub figures: Vec<Spread>,
 }
 
-/// Simulates the fly-throughs for all application times, with the interpretation, seeds and frames of a bench, at the
-/// analytic level.
+/// Simulates the fly-throughs for all application times at the analytic level. Interpretation, seeds and frames are
+/// those of the given bench (common settings).
 ///
 /// # Errors
 ///
@@ -77,7 +79,7 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
     Ok(ApplicationTime { mean_ms, jitter_ms, figures })
 }
 
-/// Returns the printed mean and deviation of each fly-through.
+/// Returns the printed mean and standard deviation of the latency of each fly-through.
 #[must_use]
 pub fn published() -> Vec<Spread> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));

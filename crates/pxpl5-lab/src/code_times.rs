@@ -1,6 +1,8 @@
-//! Measures the times of primitives in executed i860 code, for the timing table.
+//! Measures the times of primitives by executing i860 code. The results fill the table of times (timing table) of the
+//! other levels of modelling.
 //!
-//! A pass over the application scenes is executed on a board, and its clocks are attributed to primitives:
+//! The measurement executes the transformation of the application scenes on one board (a *pass*), and attributes the
+//! board's clocks to primitives:
 //!
 //! ```text
 //!   clocks of triangles in a pass = triangle * (triangles) + guard * (clipped triangles) + entry * (bin entries)
@@ -8,15 +10,14 @@
 //! ```
 //!
 //! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
-//! - `triangle`, `entry` and `sphere` come from a share of each of the three application scenes, seen along the
-//!   scene's own head motion. The first pass only fills the caches.
+//! - `triangle`, `entry` and `sphere` come from one board's share of each of the three application scenes, seen along
+//!   the scene's own head motion. The first pass only fills the caches.
 //! - `entry` is the slope over all passes by least squares.
-//! - `triangle` is the mean of the scenes' means. Triangles are measured without the spheres of their scene, whose
-//!   code would displace theirs from the instruction cache.
-//! - `sphere` is the time of spheres without their entries: the mean over the scenes that have spheres.
+//! - `triangle` is the mean of the scenes' means. Triangles are measured without the spheres of their scene, because
+//!   the code for spheres would displace the code for triangles from the instruction cache.
+//! - `sphere` is the time of spheres without their bin entries: the mean over the scenes that have spheres.
 //!
-//! Each of `guard`, `entry` and `triangle` depends on the other two, so they are computed in turn until they
-//! converge.
+//! Each of `guard`, `entry` and `triangle` depends on the other two, so they are computed in turn until they converge.
 //!
 //! ```text
 //!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
@@ -24,13 +25,13 @@
 //!
 //! - `structure` is the cost of one more empty structure in the display list.
 //! - `sphere view` is the extra cost of a scene compared with the same scene without spheres.
-//! - `pass` is the remainder: resetting bins, and code that is not in the caches.
+//! - `pass` is the remainder: the time to reset the bins, and the time to load code into the caches.
 //!
-//! Each of the three is the mean of the scenes' means.
+//! Each of `structure`, `sphere view` and `pass` is the mean of the scenes' means.
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
-//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under
-//! Slats the messages are those of fields. The result is the mean over the three scenes. `token entry` is the slope
+//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats
+//! the messages are those of display fields. The result is the mean over the three scenes. `token entry` is the slope
 //! of the time to send a bin over the number of entries in the bin, by least squares over all bins.
 
 mod messages;
@@ -56,16 +57,17 @@ use std::sync::Arc;
 /// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of boards that share a scene: the slaves of the small machine. The first share is measured.
+/// Number of boards that share a scene: the slaves of the small machine. Only the first board's share is measured.
 const BOARDS: usize = 12;
 
-/// Number of views of each scene.
+/// Number of head poses from which each scene is transformed.
 const VIEWS: u64 = 4;
-/// Time between two views in picoseconds.
+/// Time between two successive head poses in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Half the side of the square that a triangle covers at a distance of 1 m in the measurement of the clipper, in
-/// metres. Its corners lie up to 4,477 pixels from the picture's corners. Assumed: any size beyond the guard band.
+/// Half the side of the square that a triangle covers at a distance of 1 m, in metres. Used to measure the clipper. The
+/// corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any size beyond the guard
+/// band would do.
 const CLIPPED_M: f32 = 2.0;
 
 /// Number of triangles that Slats transforms at a time (published in TR94).
@@ -73,11 +75,11 @@ const CLUMP: usize = 30;
 /// Number of clumps measured in each scene.
 const CLUMPS: usize = 20;
 
-/// Number of additional edits in a message, from which the time of one edit follows. Their matrices are adjacent in
-/// memory.
+/// Number of additional edits (matrix replacements) in a message, from which the time of one edit follows. The replaced
+/// matrices are adjacent in memory.
 const EDITS: u32 = 16;
 
-/// Number of additional structures, from which the time of one structure follows.
+/// Number of additional empty structures in a display list, from which the time of one structure follows.
 const MORE_STRUCTURES: usize = 8;
 
 /// Memory of a graphics processor in bytes (published in TR94).
@@ -86,39 +88,40 @@ const MEMORY: u64 = 8 << 20;
 /// Times of primitives in nanoseconds, measured by executing code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
-    /// Time of a triangle that is not clipped: mean of the scenes' means.
+    /// Time to transform a triangle that is not clipped: mean of the scenes' means.
     pub triangle_ns: f64,
-    /// Smallest and largest of the scenes' means for a triangle.
+    /// Smallest and largest of the scenes' mean times per triangle.
     pub triangle_range_ns: [f64; 2],
-    /// Time of a sphere: mean of the scenes' means.
+    /// Time to transform a sphere: mean of the scenes' means.
     pub sphere_ns: f64,
-    /// Time of one entry in a bin.
+    /// Time to write one entry into a bin.
     pub entry_ns: f64,
-    /// Additional time of a clipped triangle: its cuts, and all resulting pieces except one.
+    /// Additional time of a clipped triangle: the time to cut it, and to process all resulting triangles except one.
     pub guard_ns: f64,
-    /// Time to begin a pass, without its structures: mean of the scenes' means.
+    /// Time to begin a pass over the display list, without its structures: mean of the scenes' means.
     pub pass_ns: f64,
-    /// Time to transform one more structure for an eye: mean of the scenes' means.
+    /// Time to transform one more structure of the display list for one eye: mean of the scenes' means.
     pub structure_ns: f64,
-    /// Additional time of a view for a structure with spheres: mean over the scenes with spheres.
+    /// Additional time per eye for a structure that contains spheres: mean over the scenes with spheres.
     pub sphere_view_ns: f64,
-    /// Time of one more edit in a message.
+    /// Time of one more edit (matrix replacement) in a message.
     pub edit_ns: f64,
-    /// Time of one bin entry that a slave sends when it has the token.
+    /// Time to send one bin entry, for a slave that has the token.
     pub token_entry_ns: f64,
-    /// Time of a message, or of a chain of messages: mean of the scenes' means.
+    /// Time to process a message, or a chain of messages: mean of the scenes' means.
     pub message_ns: f64,
-    /// Smallest and largest of the scenes' means for a message.
+    /// Smallest and largest of the scenes' mean times per message.
     pub message_range_ns: [f64; 2],
 }
 
-/// Number of iterations of [`CodeTimes::improve`]. Each iteration keeps only a small part of the previous error.
+/// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small part of the previous error.
 const ROUNDS: usize = 30;
 
-/// One pass: number of unclipped triangles, number of clipped triangles, number of bin entries, nanoseconds.
+/// One pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin entries, time in
+/// nanoseconds.
 type Sample = [f64; 4];
 
-/// One pass over spheres: number of spheres, number of bin entries, nanoseconds.
+/// One pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
 type SphereSample = [f64; 3];
 
 fn picture(of: CodeUse) -> Picture {
@@ -130,7 +133,7 @@ fn picture(of: CodeUse) -> Picture {
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
 }
 
-/// Returns the eyes that each pass over the display list transforms, one list for each pass.
+/// Returns the indices of the eyes that each pass over the display list transforms, one list for each pass.
 const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
     match of {
         CodeUse::Pphigs => &[&[0], &[1]],
@@ -145,7 +148,7 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     }
 }
 
-/// Measures the times of a code version in one use.
+/// Measures the times of a version of the i860 code, for PPHIGS or for Slats.
 ///
 /// # Errors
 ///
@@ -189,7 +192,8 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 }
 
 impl CodeTimes {
-    /// Computes the times of entries, triangles and the clipper, each from the samples minus the other two.
+    /// Computes the times of a bin entry, a triangle and the clipper. Each time is fitted to the samples after the
+    /// other two times are subtracted.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
         // Clipped triangles are counted apart, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
@@ -213,7 +217,7 @@ impl CodeTimes {
         self.guard_ns = solve(cut.iter().map(without_entries)) - self.triangle_ns;
     }
 
-    /// Returns the mean time of a sphere without its bin entries. Scenes without spheres are left out.
+    /// Returns the mean time of a sphere without its bin entries. Scenes without spheres do not count.
     fn sphere(&self, scenes: &[Vec<SphereSample>]) -> f64 {
         let sums = scenes.iter().map(|samples| {
             samples.iter().fold([0.0; 2], |[n, ns], [spheres, entries, of_spheres]| {
@@ -224,7 +228,7 @@ impl CodeTimes {
     }
 }
 
-/// Returns the mean, or 0 for no values.
+/// Returns the mean of the values, or 0 if there are none.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
     sum / f64::max(n, 1.0)
@@ -234,7 +238,8 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
-/// Returns the first of two unknown factors by least squares. If the second never occurs, only the first is fitted.
+/// Returns the first of two unknown factors of a linear model, fitted by least squares. If all coefficients of the
+/// second factor are 0, only the first factor is fitted.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     let mut sums = [0.0; 5];
     for ([a, b], y) in rows {
@@ -247,7 +252,7 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
 
-/// A scene on one board with its views.
+/// A scene on one board, with the head poses from which the scene is transformed.
 struct Rig {
     share: Share,
     views: Views,
@@ -263,7 +268,7 @@ impl Rig {
         Self::of_list(version, scene, boards, |list| list)
     }
 
-    /// Returns a rig with the scene's triangles and without its spheres.
+    /// Returns a measuring set-up with the scene's triangles and without its spheres.
     fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
         Self::of_list(version, scene, boards, without_spheres)
     }
@@ -300,8 +305,8 @@ fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, true, sphere_sample) }
 }
 
-/// Returns the samples of all passes except the first, which only fills the caches. If `together` is true, a pass for
-/// both eyes is one sample.
+/// Returns the samples of all passes except the first, which only fills the caches. If `together` is true, the passes
+/// of both eyes are combined into one sample.
 fn measured<const N: usize>(
     of: CodeUse,
     mut rig: Rig,
@@ -333,7 +338,7 @@ fn measured<const N: usize>(
     Ok(samples)
 }
 
-/// Replaces every triangle by a larger right-angled one that reaches beyond the guard band. At the distance d both
+/// Replaces every triangle by a larger right-angled triangle that reaches beyond the guard band. At the distance d both
 /// legs measure 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
     for triangle in list.positions.chunks_exact_mut(3) {
@@ -351,7 +356,7 @@ fn without_spheres(mut list: DisplayList) -> DisplayList {
     list
 }
 
-/// Returns the list without spheres and with [`MORE_STRUCTURES`] empty structures at its end.
+/// Returns the display list without its spheres and with [`MORE_STRUCTURES`] empty structures at its end.
 fn with_more_structures(list: DisplayList) -> DisplayList {
     let mut list = without_spheres(list);
     let end = list.triangles.len();
@@ -361,11 +366,11 @@ fn with_more_structures(list: DisplayList) -> DisplayList {
     list
 }
 
-/// Times of the parts of the beginning of a pass.
+/// Times in nanoseconds of the parts of the work at the beginning of a pass.
 struct PassBeginning {
     pass_ns: f64,
     structure_ns: f64,
-    /// Additional time of a view for a structure with spheres. `None` for scenes without spheres.
+    /// Additional time per eye for a structure that contains spheres. `None` for scenes without spheres.
     sphere_view_ns: Option<f64>,
 }
 
@@ -387,7 +392,7 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<PassBeginning
     })
 }
 
-/// Returns the mean time to begin a pass, which covers one eye or both.
+/// Returns the mean time to begin a pass in nanoseconds. A pass covers one eye or both.
 fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     let eyes = eyes_of_a_pass(of);
     let mut all_ns = 0.0;
@@ -407,7 +412,7 @@ fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     Ok(all_ns / (VIEWS * eyes.len() as u64) as f64)
 }
 
-/// Returns the time of one more edit in a message.
+/// Returns the time of one more edit (matrix replacement) in a message, in nanoseconds.
 fn edit_ns(version: CodeVersion) -> Result<f64, ExperimentError> {
     let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);
     let mut ns = |count: u32| {

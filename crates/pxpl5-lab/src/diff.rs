@@ -16,8 +16,8 @@ pub struct Changed {
 }
 
 impl Changed {
-    /// Returns the change from the first to the second value in percent of the first. `None` unless both are numbers and the first is
-    /// not 0.
+    /// Returns the change from the first to the second value, in percent of the first value. Returns `None` unless both
+    /// values are numbers and the first is not 0.
     #[must_use]
     pub fn percent(&self) -> Option<f64> {
         let [a, b] = [&self.a, &self.b].map(|value| value.as_ref().and_then(Value::as_f64));
@@ -29,7 +29,7 @@ impl Changed {
 /// Differences between two reports.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Differences {
-    /// True if both runs had the same trace and statistics.
+    /// True if both runs had the same trace hash and statistics.
     pub same_trace: bool,
     /// Settings that differ.
     pub settings: Vec<Changed>,
@@ -39,7 +39,7 @@ pub struct Differences {
     pub equal: usize,
 }
 
-/// First parts of the paths that are settings; the others are results.
+/// First parts of the paths that denote settings. All other paths denote results.
 const SETTINGS: [&str; 15] = [
     "schema",
     "version",
@@ -58,7 +58,7 @@ const SETTINGS: [&str; 15] = [
     "fields",
 ];
 
-/// First parts of the paths that tell nothing about the simulated machine.
+/// First parts of the paths that are not compared, because their values say nothing about the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
 /// Compares two reports as JSON, such as the contents of two files `report.json`.
@@ -93,7 +93,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
     all
 }
 
-/// Collects the values that are neither objects nor lists, with their paths.
+/// Collects all values of a JSON tree that are neither objects nor lists, with their paths.
 fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a Value>) {
     let joined = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match value {
@@ -107,7 +107,8 @@ fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a
     }
 }
 
-/// Returns the name of an entry of a list, such as a part of the latency. Entries without a name are known by their place.
+/// Returns the name of an entry in a list, such as a part of the latency. An entry without a name is identified by its
+/// index.
 fn name_of(value: &Value) -> Option<String> {
     let texts = ["name", "resource", "port", "of", "until"].map(|key| value[key].as_str());
     let texts: Vec<&str> = texts.into_iter().flatten().collect();

@@ -1,36 +1,36 @@
-//! Estimates of the memory and time of an experiment, computed from its settings before it starts. Budgets, sweeps
-//! and their jobs use these estimates.
+//! Estimates the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
+//! sweeps and Slurm jobs use these estimates.
 //!
 //! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
-//! - A run that keeps everything has `kept = fields (FIELD + COPY copies)`.
+//! - A run that keeps all observations has `kept = fields (FIELD + COPY copies)`.
 //! - A run that keeps statistics and its last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK
 //!   blocks`.
-//! - A tracked head adds `min(fields, JUDGED) ERRORS` to either.
-//! - `batch` and `blocks` belong to frameless rendering. `blocks` is the number copied in a field, limited by the
-//!   ring.
+//! - A tracked head adds `min(fields, JUDGED) ERRORS` to either value of `kept`.
+//! - `batch` and `blocks` are 0 except in frameless rendering. `blocks` is the number of blocks copied in a field,
+//!   limited by the ring.
 //!
-//! The constants of memory are measured: the peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
+//! The constants of memory are measured: the memory peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
-//! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields)
-//! + LOAD_S eyes primitives + JUDGED_FIELD_S fields`
+//! Time in seconds on one core: `runs (FIELD_S fields + pictures eyes (PICTURE_S + GP_S gps) + BLOCK_S blocks fields) +
+//! LOAD_S eyes primitives + JUDGED_FIELD_S fields`
 //!
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
-//! - `LOAD_S` counts only for pictures that a closed form computes.
+//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives.
 //! - `BLOCK_S` counts only for pipelines that draw blocks.
 //! - `JUDGED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
-//! sweep-costs-heads.toml, release build). The fit minimizes logarithms, so that estimates that are too high and too
-//! low count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also depends on
-//! the visible part of a scene and on repeated views, which no closed form predicts. An estimate distinguishes
-//! minutes from weeks; a running experiment is monitored as well.
+//! sweep-costs-heads.toml, release build). The fit minimizes the error of the logarithms, so that overestimates and
+//! underestimates count alike. docs/sweeps.md, "What a point costs", lists the errors of single points. The cost also
+//! depends on the visible part of a scene and on repeated head poses, which no formula predicts. An estimate is good
+//! enough to distinguish minutes from weeks. Running experiments are monitored as well.
 
 use crate::Plan;
 use pxpl5_run::{KeyValue, Level, Pixels};
 use pxpl5_scene::Scene;
 
-/// Sizes that determine the memory and time of an experiment.
+/// Quantities of an experiment that determine its memory and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
     /// Number of display periods.
@@ -39,19 +39,19 @@ pub struct Work {
     pub gps: u64,
     /// Number of triangles and spheres.
     pub primitives: u64,
-    /// Number of pictures drawn at a time, one for each eye.
+    /// Number of eyes for which pictures are drawn.
     pub eyes: u64,
-    /// Number of pictures of an eye in a field, at most 1.
+    /// Number of pictures per eye and field, at most 1.
     pub pictures_a_field: f64,
-    /// True if a closed form computes the pictures, for which all primitives are transformed first.
+    /// True if a closed-form formula gives the times of the pictures. All primitives are then transformed in advance.
     pub uses_closed_form: bool,
-    /// Number of blocks drawn with one view, or 0 for a pipeline without blocks.
+    /// Number of blocks of pixels drawn with one head pose, or 0 for a pipeline without blocks.
     pub batch: u64,
-    /// Width of a block in pixels, or 0 for a pipeline without blocks.
+    /// Width of a block of pixels, or 0 for a pipeline without blocks.
     pub block: u64,
-    /// True if the processors execute instructions.
+    /// True if the simulated processors execute i860 instructions.
     pub is_cycle_level: bool,
-    /// True if the run keeps all observations.
+    /// True if the run keeps all observations until its end.
     pub keeps_everything: bool,
     /// True if the experiment has a tracked head.
     pub is_tracked: bool,
@@ -64,72 +64,73 @@ pub struct Work {
 pub struct Estimate {
     /// Peak memory in bytes.
     pub bytes: f64,
-    /// Seconds on a computer that is busy with other work.
+    /// Run time in seconds on a computer that is busy with other work.
     pub seconds: f64,
 }
 
-/// Bytes of the process and a small machine.
+/// Memory in bytes of the process with a small machine.
 const BASE: f64 = 15e6;
-/// Bytes of pictures computed in advance.
+/// Memory in bytes of pictures computed in advance.
 const PICTURES: f64 = 10e6;
-/// Bytes of a graphics processor.
+/// Memory in bytes of a graphics processor.
 const GP: f64 = 60e3;
-/// Bytes of a primitive with its entries in all lists.
+/// Memory in bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Bytes of a block that waits to be drawn.
+/// Memory in bytes of a block of pixels that waits to be drawn.
 const WAITING: f64 = 5.5e3;
-/// Bytes kept for a field in a run that keeps everything.
+/// Memory in bytes for each field, in a run that keeps all observations.
 const FIELD: f64 = 4e3;
-/// Bytes kept for each block of a field in a run that keeps everything.
+/// Memory in bytes for each block of pixels in a field, in a run that keeps all observations.
 const COPY: f64 = 350.0;
-/// Bytes kept for a field in a run that keeps statistics.
+/// Memory in bytes for each field, in a run that keeps only statistics.
 const STATISTICS: f64 = 10.0;
-/// Bytes kept for each block of a field in a run that keeps statistics.
+/// Memory in bytes for each block of pixels in a field, in a run that keeps only statistics.
 const BLOCK: f64 = 100.0;
-/// Number of fields whose blocks are kept in a run that keeps statistics.
+/// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
 const WINDOW: f64 = 240.0;
-/// Bytes of the pixel errors of a field.
+/// Memory in bytes of the pixel errors of a field.
 const ERRORS: f64 = 1e3;
-/// Number of fields whose pixel errors are kept one by one.
+/// Maximum number of fields whose pixel errors are kept one by one.
 const JUDGED: f64 = 20_971.0;
 
-/// Seconds for a field, including its retrace and the samples of the head.
+/// Seconds to simulate a field, including its retrace and the samples of the head pose.
 const FIELD_S: f64 = 3.5e-4;
-/// Seconds for the regions of one eye's picture.
+/// Seconds to simulate the regions of one eye's picture.
 const PICTURE_S: f64 = 1.8e-4;
-/// Seconds for the messages of one processor for one eye's picture.
+/// Seconds to simulate one processor's messages for one eye's picture.
 const GP_S: f64 = 1.3e-5;
-/// Seconds for a block of frameless rendering.
+/// Seconds to simulate a block of pixels in frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
-/// Seconds for a primitive and an eye, which is transformed when its view is first drawn.
+/// Seconds to transform a primitive for one eye. Each primitive is transformed when its head pose is first drawn.
 const LOAD_S: f64 = 2.8e-5;
-/// Seconds for a primitive of a picture as i860 code. Assumed, from the speeds in the README.
+/// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// Number of runs with a tracked head: a dry run first measures the times at which views are seen.
+/// Number of simulations of an experiment with a tracked head: a dry run, which measures when head poses are seen, and
+/// the run itself.
 const RUNS_OF_HEAD: f64 = 2.0;
-/// Seconds to evaluate the errors of a field.
+/// Seconds to evaluate the pixel errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
 /// Slowdown factor on a computer that is busy with other work. Assumed. The four runs of the test below, on two busy
 /// cores, took 1.3 to 12 times as long as the estimate on an idle core.
 const BUSY: f64 = 2.5;
 
-/// Seconds of an NTSC field. Estimates use this value for every display.
+/// Duration of an NTSC field in seconds. Estimates use this value for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
-/// Seconds of a word on the ring. Estimates use this value for every machine.
+/// Seconds to send a word over the ring. Estimates use this value for every machine.
 const WORD_S: f64 = 50e-9;
 /// Seconds to transform a primitive on a graphics processor. Estimates use this value for every machine.
 const TRANSFORM_S: f64 = 21.7e-6;
-/// Number of words sent with each block besides its pixels.
+/// Number of words sent with each block of pixels, in addition to its pixels.
 const BLOCK_WORDS: f64 = 16.0;
-/// Number of processors that saturate the ring with blocks.
+/// Number of processors whose blocks of pixels saturate the ring.
 const BLOCK_GPS: f64 = 20.0;
-/// Minimum time between two blocks in seconds, limited by the messages of the processors. Derived: half of 12 us,
-/// because two blocks are sent at a time.
+/// Minimum time between two blocks of pixels in seconds, limited by the messages of the processors. Derived: half of 12
+/// us, because two blocks are sent at a time.
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
-    /// Returns the estimate of many runs on a number of threads: the sum of the times divided by the threads, and the
-    /// largest memory once for each thread.
+    /// Returns the estimate of many runs on a number of threads. The time is the sum of all times divided by the number
+    /// of threads. The memory is the largest memory of a run times the number of threads.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -141,8 +142,8 @@ impl Estimate {
 }
 
 impl Work {
-    /// Returns the work of a checked experiment with its scene. The number of pictures a field is 1, or less if the
-    /// processors cannot transform all primitives in a field.
+    /// Returns the work of a checked experiment with its scene. Each field has one picture, or less if the processors
+    /// need longer than a field to transform all primitives.
     #[must_use]
     pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
         let settings = plan.pipeline.settings();
@@ -170,19 +171,19 @@ impl Work {
         work
     }
 
-    /// Returns the number of NTSC fields that the processors take to transform all primitives for all eyes.
+    /// Returns the time in NTSC fields that the processors take to transform all primitives for all eyes.
     #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
         TRANSFORM_S * primitives / (NTSC_FIELD_S * self.gps.max(1) as f64)
     }
 
-    /// Returns the maximum number of blocks in a field, limited by the ring and by the messages of processors.
+    /// Returns the maximum number of blocks of pixels in a field, limited by the ring and by the processors' messages.
     fn most_blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s().max(LEAST_BLOCK_S) }
     }
 
-    /// Returns the number of blocks in a field that this number of processors can send.
+    /// Returns the number of blocks of pixels in a field that the experiment's processors can send.
     fn blocks(&self) -> f64 {
         if self.block == 0 { 0.0 } else { NTSC_FIELD_S / self.block_s() * (self.gps as f64 / BLOCK_GPS).min(1.0) }
     }
@@ -213,7 +214,7 @@ impl Work {
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
     }
 
-    /// Estimates the seconds on one idle core.
+    /// Estimates the run time in seconds on one idle core.
     #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
@@ -227,40 +228,40 @@ impl Work {
     }
 }
 
-/// A command that simulates a fixed set of experiments, and the settings that decide on its cost.
+/// A command that simulates a fixed set of experiments, with the settings that determine its cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Study {
-    /// All published figures.
+    /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::readings`]): seeds and frames of figure 7's fly-through.
+    /// The ranking of interpretations ([`crate::readings`]), with the size of figure 7's fly-through.
     Readings {
-        /// Seeds of the fly-through.
+        /// Number of seeds of the fly-through.
         seeds: u64,
-        /// Frames of each seed.
+        /// Number of frames for each seed.
         frames: u64,
     },
     /// The comparison of the levels of modelling ([`crate::levels`]).
     Levels {
-        /// Random experiments for the error against the cycle level.
+        /// Number of random experiments that measure the error against the cycle level.
         experiments: u64,
-        /// True if the speeds are measured too.
+        /// True if the simulation speeds are measured too.
         measures_speeds: bool,
     },
 }
 
-/// CPU seconds of the studies, measured with the profile `dist`: all figures; rankings without and with fly-throughs of some frames; figures at
-/// all levels, random experiments, and speeds.
+/// CPU seconds of the studies, measured with the build profile `dist`: all figures; rankings without and with
+/// fly-throughs of some frames; figures at all levels, random experiments, and speeds.
 const FIGURES_S: f64 = 35.0;
 const READINGS_S: f64 = 2.0;
 const READINGS_FRAME_S: f64 = 0.075;
 const LEVELS_S: f64 = 110.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.2;
 const SPEEDS_S: f64 = 30.0;
-/// Peak memory of the studies, bytes: at most 53 MB measured with two threads.
+/// Peak memory of a study in bytes. Measured: at most 53 MB with two threads.
 const STUDY_BYTES: f64 = 60e6;
 
 impl Study {
-    /// Estimates the memory and the time on a number of threads.
+    /// Estimates the memory, and the time on a number of threads.
     #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {
         let core_seconds = match self {
@@ -325,8 +326,8 @@ mod tests {
         }
     }
 
-    /// Time bounds of the same runs on two busy cores. An estimate must lie between a tenth of the measured time and
-    /// twice that time.
+    /// Tests the estimated times of the same runs, measured on two busy cores. An estimate must lie between a tenth of
+    /// the measured time and twice the measured time.
     #[test]
     fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
         for (work, seconds) in [

@@ -1,4 +1,4 @@
-//! Growth of host time and simulated latency with the size of scenes and machines.
+//! Measures how host time and simulated latency grow with the size of scenes and machines.
 
 use crate::limit::test_scene;
 use crate::{Workstation, parallel};
@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Result of one run. All numbers after the boards are zero if no frame was shown.
+/// Result of one run. If no frame was shown, all results (from `frames` on) are zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// Number of triangles and spheres in the scene.
@@ -21,31 +21,31 @@ pub struct Point {
     pub n_renderers: usize,
     /// Number of complete stereo frames shown during the run.
     pub frames: usize,
-    /// Host time per frame in milliseconds, without pixels: the fastest of three runs.
+    /// Host time per simulated frame in milliseconds, without pixels: the fastest of three runs.
     pub host_ms: f64,
-    /// Mean latency in fields.
+    /// Mean latency of a frame in display fields.
     pub latency_fields: f64,
     /// Frames per second of simulated time, or 0 for fewer than two frames.
     pub updates_hz: f64,
 }
 
-/// Numbers of triangles for 50 GPs and 5 renderers.
+/// Sizes of the test scenes in triangles, for a machine of 50 graphics processors (GPs) and 5 renderers.
 const TRIANGLES: [u32; 7] = [12, 100, 1_000, 10_000, 100_000, 300_000, 1_000_000];
 
-/// Numbers of triangles for the series of machines: a scene of 1994, and the size of the built-in head.
+/// Sizes of the scenes in triangles for the series of machines: a typical scene of 1994, and the built-in head.
 const SCENES: [u32; 2] = [10_000, 59_592];
 
-/// Numbers of GPs and renderers, simulated with each of the [`SCENES`].
+/// Sizes of the machines: number of GPs and number of renderers. Each machine draws each of the [`SCENES`].
 const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
 
-/// Memory of a GP in bytes. A million triangles do not fit into the 8 MB of 50 real GPs.
+/// Memory of a GP in bytes in these runs. A million triangles do not fit into the 8 MB of 50 real GPs.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time of a triangle on its GP and, in 1.35 regions, on a renderer, in nanoseconds. The length of a run follows from
-/// these times.
+/// Time to process a triangle in nanoseconds: on its GP, and on a renderer for the 1.35 regions that it touches. The
+/// length of a run follows from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Number of frames for which a run must be long enough.
+/// Number of frames that a run must be long enough to show.
 const FRAMES: u64 = 30;
 
 /// Returns the number of display periods in which [`FRAMES`] stereo frames are shown.
@@ -115,7 +115,7 @@ pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
     all.map(|(triangles, (n_gps, n_renderers))| run(triangles, n_gps, n_renderers)).collect()
 }
 
-/// Result of an application scene on a preset. The papers do not say which machine they used.
+/// Result of an application scene on a machine preset. The papers do not say which machine they used.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Application {
     /// Name of the built-in scene.
@@ -130,9 +130,9 @@ pub struct Application {
     pub frames: usize,
 }
 
-/// Number of seeds of head motion for the application scenes.
+/// Number of seeds of the head motion for each application scene.
 const SEEDS: u64 = 30;
-/// Number of fields of a run of an application scene: 300 frames at 30 Hz, and the warm-up.
+/// Number of display fields in a run of an application scene: 300 frames at 30 Hz, and the warm-up.
 const FIELDS: u64 = 616;
 
 /// Runs `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.
@@ -168,7 +168,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     Ok(Application { scene, machine, latency_fields: [fields.mean, fields.sd], updates_hz: hz, frames })
 }
 
-/// Returns the latencies in fields and the frames per second for one seed of head motion.
+/// Runs one seed of the head motion. Returns the latency of each frame in fields, and the frames per second.
 fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), String> {
     let outcome = experiment.clone().seed(seed).run().map_err(|error| error.to_string())?;
     let pictures = outcome.complete_pictures();
@@ -187,7 +187,7 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
     products / logs.iter().map(|p| (p.0 - mean_x) * (p.0 - mean_x)).sum::<f64>()
 }
 
-/// Returns docs/scaling.md: tables, exponents and a chart.
+/// Returns the text of docs/scaling.md: tables, exponents and a chart.
 #[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
@@ -236,19 +236,20 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     text
 }
 
-/// Returns the exponent of a quantity over the number of primitives, from `from` primitives on.
+/// Returns the exponent of the power law of a quantity over the number of primitives. Only runs with at least `from`
+/// primitives count.
 fn power(points: &[Point], from: usize, of: impl Fn(&Point) -> f64) -> f64 {
     let large = points.iter().filter(|p| p.primitives >= from && p.frames > 0);
     exponent(&large.map(|p| (p.primitives as f64, of(p))).collect::<Vec<_>>())
 }
 
-/// Returns the additional host time of a frame on a machine, compared with 13 GPs and 5 renderers, in percent.
+/// Returns the additional host time per frame on a machine, in percent of the time for 13 GPs and 5 renderers.
 fn more_host_time(points: &[Point], primitives: usize, machine: (usize, usize)) -> Option<f64> {
     let other_ms = host_ms(points, primitives, machine)?;
     Some((other_ms / host_ms(points, primitives, (13, 5))? - 1.0) * 100.0)
 }
 
-/// Returns the host time of a frame on a machine in milliseconds, or `None` if no frame was shown.
+/// Returns the host time per frame on a machine in milliseconds, or `None` if no frame was shown.
 fn host_ms(points: &[Point], primitives: usize, (n_gps, n_renderers): (usize, usize)) -> Option<f64> {
     let mut shown = points.iter().filter(|p| p.frames > 0);
     let point = shown.find(|p| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers))?;
@@ -271,8 +272,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of host time over triangles, both logarithmic. Each row is one size, and each column a tenth of a
-/// decade.
+/// Writes a chart of host time over triangles, both logarithmic. Each row is one scene size, and each column a tenth of
+/// a decade.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

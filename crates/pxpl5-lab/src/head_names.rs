@@ -1,4 +1,4 @@
-//! Head motions, trackers and predictors by name.
+//! Builds head motions, trackers and predictors from their names.
 
 use glam::{DVec3, Vec3};
 use std::fs::File;
@@ -14,32 +14,32 @@ use tracking::motion::{
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Fastest pan in degrees per second, well above the peak rate of a head, 370.
+/// Maximum speed of the motion `pan` in degrees per second, well above the peak rate of a head, 370.
 const FASTEST_PAN: f64 = 10_000.0;
 
-/// Error of a motion, tracker or predictor that cannot be built.
+/// Error in the name or parameters of a motion, tracker or predictor.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// An unknown name.
+    /// The name is unknown.
     #[error("there is no {what} `{found}`; expected {expected}")]
     Unknown {
-        /// Kind of the named thing: motion, tracker or predictor.
+        /// Kind of thing that was named: motion, tracker or predictor.
         what: &'static str,
         /// The unknown name.
         found: String,
-        /// Names that are known.
+        /// The names that are known, as text.
         expected: &'static str,
     },
-    /// Text after the colon that is not a number, or is out of range.
+    /// The text after the colon is not a number, or the number is out of range.
     #[error("expected {expected}, found `{found}`")]
     Number {
         /// The invalid text.
         found: String,
-        /// Expected form and range, in words.
+        /// Expected form and range of the number, in words.
         expected: &'static str,
     },
-    /// A walk through a scene without a path.
+    /// The motion walks along the scene's path, but the scene has no path.
     #[error(
         "`{found}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
     )]
@@ -47,50 +47,50 @@ pub enum MotionError {
         /// Name of the motion.
         found: String,
     },
-    /// A recording that cannot be opened.
+    /// The file of a recorded head motion cannot be opened.
     #[error("{path} cannot be opened: {error}")]
     Open {
-        /// Path of the recording.
+        /// Path of the recording's file.
         path: String,
         /// Error of the operating system.
         error: io::Error,
     },
-    /// A recording that cannot be replayed.
+    /// The recording of a head motion cannot be replayed.
     #[error("{path}: {error}")]
     Load {
-        /// Path of the recording.
+        /// Path of the recording's file.
         path: String,
         /// Error of the recording's reader.
         error: RecordingError,
     },
 }
 
-/// Names of all motions that [`motion`] accepts, for help texts and errors.
+/// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
                            walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
 
-/// Fastest slide in metres per second.
+/// Maximum speed of the motions `slide` and `walk` in metres per second.
 const FASTEST_SLIDE: f64 = 100.0;
-/// Highest frequency of a sine in Hz.
+/// Maximum frequency of the motion `sine` in Hz.
 const HIGHEST_HZ: f64 = 100.0;
 
-/// Options of a recording: the format of its file, and the behaviour at its end.
+/// Options for replaying a recorded head motion: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes of the file, unless its header states them.
+    /// Columns and axes of the recording's file, unless its header states them.
     pub format: RecordingFormat,
-    /// Behaviour after the last sample.
+    /// Behaviour after the last sample of the recording.
     pub end: End,
 }
 
-/// Returns true if the name of a motion is a walk along the scene's path.
+/// Returns true if the name denotes the motion `walk`, along the scene's path.
 #[must_use]
 pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
 }
 
-/// Builds a walk along a closed path from its name. `walk:M_PER_S` looks ahead. `walk:M_PER_S:SEED` looks around like
-/// `synthetic:SEED`.
+/// Builds a walk along a closed path from its name. In `walk:M_PER_S` the viewer looks straight ahead. In
+/// `walk:M_PER_S:SEED` the viewer looks around as in `synthetic:SEED`.
 ///
 /// # Errors
 ///
@@ -116,16 +116,16 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
     })
 }
 
-/// Returns true if the name of a motion is the path of a recording.
+/// Returns true if the name of a motion is the path of a recording's file.
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     [".csv", ".txt", ".tum", ".jsonl"].iter().any(|end| name.ends_with(end))
 }
 
-/// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the
-/// yaw), `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`,
-/// `.tum` or `.jsonl` ([`Recording::read`]). Walks need a scene: [`walk`].
+/// Builds a motion from its name: `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw),
+/// `pendulum`, `synthetic:SEED`, or the path of a recording. A recording's path ends in `.csv`, `.txt`, `.tum` or
+/// `.jsonl` ([`Recording::read`]). The motion `walk` also needs a scene, see [`walk`].
 ///
 /// # Errors
 ///
@@ -134,7 +134,7 @@ pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> 
     replayed(text, &Replay::default())
 }
 
-/// Builds a motion from its name, with the options of a recording.
+/// Builds a motion from its name. The options `replay` apply to recordings.
 ///
 /// # Errors
 ///
@@ -185,7 +185,7 @@ fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     recording_of(file, &name(), replay)
 }
 
-/// Reads a recording from its contents. Error messages refer to the recording as `name`.
+/// Reads a recorded head motion from the contents of its file. Error messages call the recording `name`.
 pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, MotionError> {
     let recording = Recording::read_as(contents, &replay.format);
     Ok(recording.map_err(|error| MotionError::Load { path: name.to_owned(), error })?.ending(replay.end))
@@ -203,8 +203,8 @@ pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
     Ok(tracker_by(&Tables::PAPERS, name)?.0)
 }
 
-/// Returns the tracker with one of the names in [`TRACKERS`], with the numbers of `tables`, and the name of the
-/// tracker's own table.
+/// Returns the tracker with one of the names in [`TRACKERS`] and the constants of `tables`. Also returns the name of
+/// the table from which the tracker's constants come.
 ///
 /// # Errors
 ///

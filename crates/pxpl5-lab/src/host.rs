@@ -1,4 +1,4 @@
-//! The computer on which experiments run: its clock, and threads that compute pixels outside simulated time.
+//! The computer on which experiments run. Provides a clock, and threads that compute pixels outside simulated time.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// This computer, which provides a clock and worker threads for pixels.
+/// The computer on which experiments run, with its clock and worker threads for pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Workstation {
     threads: usize,
@@ -16,7 +16,7 @@ pub struct Workstation {
 
 impl Workstation {
     /// Maximum number of regions that wait for a worker thread. More would only use memory. If the queue is full, the
-    /// simulating thread computes the next region itself.
+    /// simulating thread computes the pixels of the next region itself.
     pub const WAITING_REGIONS: usize = 256;
 
     /// Creates a host with one worker thread for each core.
@@ -25,7 +25,7 @@ impl Workstation {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// Creates a host with a number of worker threads. With 0 threads the simulating thread computes the pixels.
+    /// Creates a host with this number of worker threads. With 0 threads, the simulating thread computes the pixels.
     #[must_use]
     pub const fn with_threads(threads: usize) -> Self {
         Self { threads }
@@ -38,7 +38,7 @@ impl Default for Workstation {
     }
 }
 
-/// Instant from which seconds are counted.
+/// Instant on the host from which seconds are counted.
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 impl Host for Workstation {
@@ -60,7 +60,7 @@ struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,
     waiting: Receiver<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
-    /// Number of regions that the simulating thread computed.
+    /// Number of regions whose pixels the simulating thread computed.
     own: u64,
 }
 
@@ -72,12 +72,13 @@ impl PixelThreads {
     }
 }
 
-/// Starts a thread that computes regions until the queue closes. The thread returns their number.
+/// Starts a thread that computes the pixels of regions until the queue closes. The thread returns the number of
+/// regions.
 fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
     std::thread::spawn(move || compute_all(&waiting))
 }
 
-/// Computes regions until the queue closes, and returns their number.
+/// Computes the pixels of regions until the queue closes. Returns the number of regions.
 fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
     waiting.iter().fold(0, |regions, region| {
         let _ = region.pixels();
@@ -95,7 +96,8 @@ impl PixelWorker for PixelThreads {
         }
     }
 
-    /// Computes all waiting regions, ends the worker threads, and returns the number of computed regions.
+    /// Computes the pixels of all waiting regions and ends the worker threads. Returns the number of all computed
+    /// regions.
     ///
     /// # Panics
     ///

@@ -1,19 +1,19 @@
-//! Intervals of the figures while parameters that no paper prints vary within their ranges.
+//! Intervals of the published figures, while parameters that no paper prints vary within their ranges.
 //!
-//! The intervals come from three designs at the analytic level, which follows the transaction level closely enough
-//! for differences:
+//! The intervals come from three designs of experiments at the analytic level. For differences between settings, this
+//! level agrees closely enough with the transaction level.
 //!
-//! - *one at a time*: each parameter at the low and at the high end of its range, all others at their presets
-//! - *readings*: each open question of the papers answered otherwise ([`Reading::neighbours`]), one at a time
+//! - *one at a time*: one parameter at the low or high end of its range, all others at their presets
+//! - *readings*: a different answer to one open question of the papers at a time ([`Reading::neighbours`])
 //! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed
 //!
 //! Parameters that were fitted to a figure keep their values, except the two times per triangle of Slats. These two
-//! vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore states its
-//! error without a new fit.
+//! vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore shows the
+//! figure's error without a new fit.
 //!
-//! Figures that need events are varied by fewer parameters: the depth of the FIFO and the channels of a sender, for
-//! which no source exists. The figure of the pendulum rig is also varied by the photodiode's position and by the
-//! interpretations.
+//! Some figures need a simulation with events. For these figures only two machine parameters vary, for which no source
+//! exists: the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the
+//! photodiode's position and the interpretations vary too.
 
 use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
@@ -22,23 +22,24 @@ use pxpl5_run::Level;
 use pxpl5_sim::mix;
 use serde::Serialize;
 
-/// Number of machines in the joint sample.
+/// Number of random machines in the joint sample.
 pub const SAMPLES: u64 = 500;
 
-/// Seed of the joint sample.
+/// Seed of the random machines in the joint sample.
 const SEED: u64 = 0x5EED_0F05;
 
-/// Number of seeds and number of frames of the Mig in every sample.
+/// Number of seeds and number of frames of the test scene "mig" for each random machine.
 const MIG: (u64, u64) = (6, 150);
 
 /// A parameter that varies within its range.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variation {
-    /// Path of the parameter. A parameter of a single preset has the preset's name and a colon as a prefix.
+    /// Path of the parameter. If the variation applies to one preset only, the path begins with the preset's name and a
+    /// colon.
     pub path: String,
     /// Value of the parameter in the preset.
     pub value: u64,
-    /// Minimum and maximum that the sources allow.
+    /// Minimum and maximum value of the parameter that the sources allow.
     pub range: (u64, u64),
     /// Provenance of the value: derived or assumed, never published.
     pub standing: Standing,
@@ -49,9 +50,10 @@ pub struct Variation {
 pub struct Effect {
     /// Path of the parameter, as in [`Variation::path`].
     pub path: String,
-    /// Value of the figure with the parameter at the low and at the high end of its range.
+    /// Values of the figure at the low and at the high end of the parameter's range.
     pub ends: [f64; 2],
-    /// Relative change of the figure divided by the relative change of the parameter, from end to end.
+    /// Relative change of the figure divided by the relative change of the parameter. Both changes are taken from the
+    /// low to the high end of the range.
     pub elasticity: f64,
 }
 
@@ -60,46 +62,48 @@ pub struct Effect {
 pub struct Interval {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
-    /// Value for the presets at the analytic level. Figures without a closed form are simulated with events.
+    /// Value of the figure for the presets at the analytic level. Figures without a closed-form formula are simulated
+    /// with events instead.
     pub nominal: f64,
-    /// Minimum and maximum over both ends of every range, one parameter at a time.
+    /// Minimum and maximum value of the figure when one parameter at a time takes either end of its range.
     pub one_at_a_time: [f64; 2],
-    /// Minimum and maximum over the interpretations that answer one question differently.
+    /// Minimum and maximum value of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
-    /// Interpretations that change the figure, strongest first, with its value.
+    /// Interpretations that change the figure, each with the resulting value of the figure. The strongest comes first.
     pub rules: Vec<(String, f64)>,
-    /// Minimum and maximum over the joint sample.
+    /// Minimum and maximum value of the figure over the random machines of the joint sample.
     pub joint: [f64; 2],
-    /// 5th and 95th percentile of the joint sample.
+    /// 5th and 95th percentile of the figure over the random machines of the joint sample.
     pub likely: [f64; 2],
-    /// Parameters that change the figure, strongest first.
+    /// Parameters that change the figure. The parameter with the strongest effect comes first.
     pub effects: Vec<Effect>,
 }
 
 impl Interval {
-    /// Returns the bounds over all designs, as computed at the analytic level.
+    /// Returns the minimum and maximum of the figure over all designs, as computed at the analytic level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
         [low.min(self.readings[0]), high.max(self.readings[1])]
     }
 
-    /// Returns the bounds over all parameters, without the interpretations.
+    /// Returns the minimum and maximum of the figure over all parameters, without other interpretations.
     #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
 }
 
-/// Ranges of the times per triangle within which figures 12 and 14 are reproduced exactly.
+/// Times per triangle in nanoseconds that were fitted to figures 12 and 14. Any time within its range reproduces the
+/// figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
-/// Parameters of the i860 are left out, because the analytic level uses closed forms of the timing tables, in which
-/// no code runs. An interval over them would wrongly suggest that they never matter. At the cycle level they do
-/// matter. Here the range of `gp.triangle_ns` stands for their effect.
+/// Parameters of the i860 are left out. The analytic level uses formulas with the timing tables and executes no code,
+/// so an interval would wrongly suggest that these parameters never matter. At the cycle level they do matter. Here the
+/// range of `gp.triangle_ns` stands for their effect.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
@@ -117,13 +121,13 @@ pub fn variations() -> Vec<Variation> {
     of_machine.chain(fitted).collect()
 }
 
-/// Measures all figures with some changed parameters. A figure is `None` if the experiment has no value.
+/// Measures all figures with some changed parameters. A figure is `None` if its experiment yields no value.
 fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
     let bench = Bench { changes, ..bench.clone() };
     FIGURES.iter().map(|figure| value_of(&bench, figure.id)).collect()
 }
 
-/// Returns the value of a figure, or `None` if the figure has no closed form or no finite value.
+/// Returns the value of a figure, or `None` if the figure has no closed-form formula or no finite value.
 fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     if WITHOUT_CLOSED_FORM.contains(&id) {
         return None;
@@ -131,7 +135,8 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures around the values of a bench at the analytic level.
+/// Computes the intervals of all figures at the analytic level, around their values for the given bench (common
+/// settings of all measurements).
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
@@ -162,13 +167,15 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     intervals
 }
 
-/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events at every level.
+/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, whichever level is
+/// requested.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
-/// Parameters of the machine without a source, by which figures that need events are varied.
+/// Paths of the machine parameters without a source. They vary for figures that need a simulation with events.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
-/// Computes the interval of a figure that needs events: [`OF_EVENTS`] at both ends of their ranges, one at a time.
+/// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both
+/// ends of its range, one at a time.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -176,8 +183,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns a figure at both ends of each range, one parameter at a time. A setting for which the experiment has no
-/// value counts as the nominal value.
+/// Returns the values of a figure at both ends of each range, one parameter at a time. If the experiment yields no
+/// value, the nominal value counts.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -189,8 +196,8 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
 /// Number of the figure that the pendulum rig measures.
 const OF_RIG: &str = "17";
 
-/// Computes the interval of the rig's figure with events: effects of the photodiode's position, machine parameters
-/// and interpretations.
+/// Computes the interval of the pendulum rig's figure by simulation with events. The photodiode's position, machine
+/// parameters and interpretations vary.
 fn of_rig(bench: &Bench) -> Option<Interval> {
     let value = |bench: Bench| Some(bench.measure(OF_RIG).ok()?.value);
     let of_machine = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str()));
@@ -205,14 +212,15 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
     Some(interval)
 }
 
-/// Returns the photodiode's line on the screen as a variation. Its value is assumed.
+/// Returns the assumed photodiode's line on the screen as a parameter that varies.
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
     Some(Variation { path: line.path, value, range, standing: line.info.standing })
 }
 
-/// Combines the designs for one figure: its values at the ends of every range in turn, and in the joint sample.
+/// Combines two designs into the interval of one figure. `ends` has the values at both ends of every range in turn, and
+/// `joint` the values of the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -228,7 +236,7 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the values under other interpretations.
+    /// Adds the values of the figure under other interpretations to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
@@ -240,7 +248,7 @@ impl Interval {
     }
 }
 
-/// Returns the nearest value to the quantile `share`, 0 to 1, of sorted values.
+/// Returns the element nearest to a quantile of sorted values. `share` is the quantile, from 0 to 1.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
@@ -258,7 +266,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change that is listed.
+/// Smallest relative change of a figure that is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {
@@ -276,14 +284,15 @@ fn effect(v: &Variation, ends: [f64; 2], nominal: f64) -> Effect {
 }
 
 impl Effect {
-    /// Returns the largest relative change of a figure, compared with its value for the presets.
+    /// Returns the largest relative change of a figure that a parameter causes, compared with the figure's nominal
+    /// value.
     fn reach(&self, nominal: f64) -> f64 {
         bounds(self.ends.iter().map(|end| (end / nominal - 1.0).abs()))[1]
     }
 }
 
-/// Copies the intervals into the rows, as computed. A figure without a closed form has no value at the analytic
-/// level.
+/// Copies the computed intervals into the rows of the figures. A figure without a closed-form formula gets no value at
+/// the analytic level.
 pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
@@ -298,8 +307,8 @@ mod tests {
     use super::*;
     use crate::figures::{Figure, FigureValue};
 
-    /// Row of figure 2, published as 31.2 ms. The analytic level gives 20 to 22 ms, and 21 ms with the presets'
-    /// numbers.
+    /// Returns the row of figure 2, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
+    /// ms for the presets.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
         let interval = Interval {
@@ -344,8 +353,8 @@ mod tests {
         assert!(!rows[0].is_out_of_reach());
     }
 
-    /// The beam scans a field line by line. Two lines are 63.56 us apart, and 239 line times separate the first line
-    /// from the last.
+    /// Tests the photodiode's effect. The beam scans a field line by line. Two lines are 63.56 us apart, and 239 line
+    /// times separate the first line from the last.
     #[test]
     fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");

@@ -1,15 +1,15 @@
-//! Tools that answer questions over many experiments. This crate alone uses files and threads of the host: it runs on
-//! a [`Workstation`].
+//! Tools for questions that need many experiments. This is the only crate that uses files and threads of the host
+//! computer, which a [`Workstation`] represents.
 //!
 //! | question | module |
 //! |---|---|
-//! | values of the published figures in the model, and their intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
-//! | the interpretation of the papers that explains the figures | [`readings`] |
+//! | values of the published figures in the model, with intervals | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | the interpretation of the papers that explains the figures best | [`readings`] |
 //! | effect of the host application's time, which no paper prints | [`application_time`] |
 //! | differences between the levels of modelling | [`levels`] |
 //! | times of primitives in executed code | [`code_times`] |
 //! | largest number of triangles drawn in time, growth of the cost | [`limit`], [`growth`] |
-//! | values of any setting that reach a goal | [`limit::OverQuery`] |
+//! | range of any setting in which an experiment reaches a goal | [`limit::OverQuery`] |
 //! | differences between two results | [`diff`] |
 //! | effect of 10 % more of each resource | [`what_if`] |
 //! | comparison of all low-latency methods | [`compare`] |
@@ -17,10 +17,10 @@
 //! | memory and time of an experiment on this computer | [`estimate`] |
 //! | experiments at many points of a parameter space | [`sweep`] |
 //! | the files of a folder that belong to one run | [`manifest`] |
-//! | an experiment as text, and its continuation | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
+//! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
-//! [`registry`] lists the built-in pipelines and displays with their closed forms. An experiment file may use another
-//! registry.
+//! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its analytic model, if there is
+//! one. An experiment file may use another registry.
 
 #![warn(missing_docs)]
 
@@ -60,7 +60,7 @@ pub use what_if::{WhatIf, what_if};
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};
 
-/// Returns the built-in pipelines and displays, with the closed forms of the pipelines that have one.
+/// Returns the registry of the built-in pipelines and displays. Some pipelines have an analytic model (closed form).
 #[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {

@@ -13,7 +13,7 @@ use thiserror::Error;
 /// Name of the manifest file in its folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
 
-/// A listed file, with a hash that identifies its contents.
+/// A file in the manifest, with a hash that identifies the file's contents.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestEntry {
     /// Name of the file, without a folder.
@@ -22,44 +22,45 @@ pub struct ManifestEntry {
     pub contents: Option<String>,
 }
 
-/// The files of a folder, and the command that wrote them.
+/// List of the files in a folder that one command wrote.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     schema: String,
     version: String,
     command: String,
     files: Vec<ManifestEntry>,
-    /// Files of the previous manifest that are removed after this one is written. After a crash they may still exist.
+    /// Files of the previous manifest that will be removed after this manifest is written. After a crash these files
+    /// may still exist.
     #[serde(default)]
     replaced: Vec<ManifestEntry>,
 }
 
-/// Error of a manifest or of a listed file.
+/// Error of a manifest, or of a file in the manifest.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManifestError {
-    /// A manifest that cannot be read.
+    /// The manifest's file cannot be read.
     #[error("{path}: cannot be read: {reason}")]
     Io {
         /// Path of the manifest.
         path: String,
-        /// Reason that the operating system gives.
+        /// Reason given by the operating system.
         reason: String,
     },
-    /// A file with the manifest's name that is not a manifest.
+    /// A file has the manifest's name but is not a manifest.
     #[error("{path}: expected a manifest of pxpl5 (schema {}), found {found}; choose another folder", Manifest::SCHEMA)]
     NoManifest {
         /// Path of the file.
         path: String,
-        /// First error in the file.
+        /// Description of the first error in the file.
         found: String,
     },
-    /// A listed file that is missing, or has other contents.
+    /// A file in the manifest is missing, or has other contents.
     #[error("{path}: expected the file that {MANIFEST_FILE} lists, found {found}")]
     Changed {
         /// Path of the file.
         path: String,
-        /// Description of what was found instead.
+        /// State of the file that was found.
         found: &'static str,
     },
 }
@@ -69,7 +70,7 @@ impl ManifestEntry {
         Self { name: name.to_owned(), contents: Some(Fingerprint::of(bytes).to_string()) }
     }
 
-    /// Returns true if the contents match the entry.
+    /// Returns true if the contents of a file match the hash in its manifest entry.
     fn is_of(&self, bytes: &[u8]) -> bool {
         self.contents.as_ref().is_none_or(|contents| *contents == Fingerprint::of(bytes).to_string())
     }
@@ -79,7 +80,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name of sweeps. Their rows may be the work of hours, so other commands never replace them.
+    /// Command name in the manifest of a sweep. Its rows may be the work of hours, so other commands never replace
+    /// them.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.
@@ -127,34 +129,34 @@ impl Manifest {
         }
     }
 
-    /// Returns the command that wrote the files.
+    /// Returns the name of the command that wrote the files.
     #[must_use]
     pub fn command(&self) -> &str {
         &self.command
     }
 
-    /// Returns the names of the files in the order in which they were written.
+    /// Returns the names of all files in the manifest, in the order in which they were written.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|entry| entry.name.as_str())
     }
 
-    /// Returns true if a file is listed.
+    /// Returns true if the manifest contains a file of this name.
     #[must_use]
     pub fn lists(&self, name: &str) -> bool {
         self.names().any(|listed| listed == name)
     }
 
-    /// Lists a file with a hash of its contents.
+    /// Adds a file to the manifest, with a hash of its contents.
     pub fn add(&mut self, name: &str, bytes: &[u8]) {
         self.put(ManifestEntry::of(name, bytes));
     }
 
-    /// Lists a file that still grows.
+    /// Adds a file that still grows to the manifest, without a hash.
     pub fn add_growing(&mut self, name: &str) {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Lists all files of another manifest.
+    /// Adds all files of another manifest to this one.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }
@@ -166,7 +168,7 @@ impl Manifest {
         }
     }
 
-    /// Reads a listed file. Returns `None` if the file is not listed.
+    /// Reads a file that the manifest lists. Returns `None` if the file is not listed.
     ///
     /// # Errors
     ///
@@ -182,8 +184,8 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Replaces the previous manifest. Returns the files to remove: files that are not written again and are
-    /// unchanged since they were written.
+    /// Declares that this manifest replaces the previous one (`before`). Returns the old files to remove. These are
+    /// files that the new run does not write and that have not changed since they were written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));
@@ -201,13 +203,13 @@ impl Manifest {
     }
 }
 
-/// Returns true if the name is a plain file name in the folder, other than the manifest's.
+/// Returns true if the name is a plain file name, without a folder, other than the manifest's own name.
 fn is_plain(name: &str) -> bool {
     let is_one_part = Path::new(name).file_name().is_some_and(|part| part == name);
     is_one_part && !name.contains(['/', '\\']) && name != MANIFEST_FILE
 }
 
-/// Returns true if the entry names a regular file with unchanged contents. Returns false for files that grow.
+/// Returns true if the entry's file is a regular file with unchanged contents. Returns false for files that grow.
 fn is_unchanged(folder: &Path, entry: &ManifestEntry) -> bool {
     let path = folder.join(&entry.name);
     let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-/// Applies `run` to every item.
+/// Applies `run` to every item in parallel, and returns the results in the order of the items.
 ///
 /// # Panics
 ///

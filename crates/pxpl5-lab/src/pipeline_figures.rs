@@ -1,31 +1,31 @@
-//! The papers' pipeline figures, redrawn from simulations.
+//! The diagrams of pipelines in the papers, redrawn from simulations.
 
 use crate::experiment_file::{ExperimentFile, FileError};
 use pxpl5_run::{ExperimentError, Outcome};
 use thiserror::Error;
 
-/// A pipeline figure of a paper, with the experiment that redraws it.
+/// A diagram of a pipeline in a paper, with the experiment that redraws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PipelineFigure {
     /// Name of the figure's file, without the extension.
     pub name: &'static str,
     /// Paper and figure number.
     pub source: &'static str,
-    /// Caption: the pipeline, and the effect to look for.
+    /// Caption: the pipeline, and the effect to look for in the drawing.
     pub shows: &'static str,
     /// Text of the experiment file.
     pub experiment: &'static str,
-    /// Number of fields drawn. `None` leaves the choice to the drawing.
+    /// Number of display fields that are drawn. If `None`, the drawing chooses the number.
     pub fields: Option<u64>,
 }
 
-/// The pipeline figures. The papers name no scenes, so the scenes are chosen to give the stages the published
-/// relations. Figure 4 also needs a chosen number of triangles and time per triangle. TRANSFORM, RENDER and COPY then
-/// take 15.6 ms each, as in row 5 of ACCURACY.md.
+/// The papers' diagrams of pipelines. The papers name no scenes. The scenes are chosen so that the stages have the
+/// published relations. Figure 4 also needs a chosen number of triangles and time per triangle. TRANSFORM, RENDER and
+/// COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
-/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md they follow the rules of its text: a renderer
-/// with a finished region continues with the next one (`finished = "store"`). By default renderers wait, which fits
-/// TR94's measurements.
+/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md they follow the rules of TR94's text: a
+/// renderer with a finished region continues with the next region (`finished = "store"`). By default renderers wait,
+/// which agrees with TR94's measurements.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {
         name: "tr94-1-rendering-control-mono",
@@ -72,20 +72,20 @@ pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     },
 ];
 
-/// Error of a pipeline figure.
+/// Error while a diagram of a pipeline is redrawn.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PipelineFigureError {
-    /// An invalid experiment.
+    /// The experiment of the diagram is invalid.
     #[error(transparent)]
     File(#[from] FileError),
-    /// An experiment without a result.
+    /// The experiment of the diagram yields no result.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
 }
 
 impl PipelineFigure {
-    /// Runs the figure's experiment.
+    /// Runs the experiment that redraws the diagram.
     ///
     /// # Errors
     ///

@@ -1,15 +1,15 @@
-//! The pendulum rig in front of the emulated machine, which measures latency from outside and compares the result
+//! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and
-//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is
-//! not full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives
-//! the line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats,
-//! switches the line when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and light,
+//! and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not full,
+//! and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the line,
+//! so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the line
+//! when it samples the pose of a frame.
 //!
-//! The oscilloscope's traces do not use the pipeline's own records of its pictures. The low points come from the
-//! pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from the
-//! board that starts the frame. The pipeline's records give the inside measurement.
+//! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
+//! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
+//! the board that starts the frame. The pipeline's records give the system's own time stamps.
 
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
@@ -31,74 +31,74 @@ use tracking::time::nearest_ps;
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
 
-/// A measurement to be made with the pendulum rig.
+/// A measurement of latency with the pendulum rig.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// Pendulum, detection of the low point, and photodiodes.
+    /// Settings of the pendulum, of the detection of its low point, and of the photodiodes.
     pub rig: PendulumRig,
-    /// Tracker on the bob.
+    /// Tracker on the bob of the pendulum.
     pub tracker: TrackerConfig,
     /// Seed of the tracker's noise.
     pub seed: u64,
-    /// Number of low points to measure, at least 2.
+    /// Number of passes of the pendulum through its low point to measure, at least 2.
     pub passes: usize,
 }
 
-/// Error of a measurement.
+/// Error of a measurement with the rig.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RigRunError {
-    /// Invalid settings of the tracker.
+    /// The settings of the tracker are invalid.
     #[error(transparent)]
     Tracker(#[from] HeadError),
-    /// A pipeline that cannot run on the machine.
+    /// The pipeline cannot run on the machine.
     #[error(transparent)]
     Run(#[from] ExperimentError),
-    /// No low point, or no light under a photodiode.
+    /// The tracker reported no low point, or the photodiode saw no light.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// A requested frame that was not shown completely.
+    /// A requested frame was not shown completely.
     #[error(
         "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
     )]
     NotShown {
-        /// Number of frames that low points requested.
+        /// Number of frames that were requested at low points.
         expected: usize,
-        /// Number of frames shown completely, by the pipeline's records.
+        /// Number of requested frames that were shown completely, according to the pipeline's records.
         found: usize,
     },
-    /// A pipeline whose frames cannot be identified by light under the photodiode.
+    /// The photodiode cannot tell when a frame of this pipeline appears.
     #[error("expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
-        /// Reason why a step from dark to light is not a frame.
+        /// Reason why a step from dark to light does not mark a new frame.
         reason: &'static str,
-        /// The pipeline's own definition of when a picture is due.
+        /// The pipeline's own definition of the time at which a picture is due.
         definition: &'static str,
     },
-    /// A line of the photodiode that lies below the screen.
+    /// The line of the photodiode lies below the screen.
     #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
     Photodiode {
-        /// Number of lines of the screen.
+        /// Number of lines on the screen.
         lines: u32,
-        /// Line of the photodiode.
+        /// Number of the photodiode's line in the settings, counted from 0.
         found: u32,
     },
 }
 
-/// Default number of low points. They fall anywhere in a field, and this number determines the mean wait for a
-/// retrace to a fifth of a field.
+/// Default number of low points to measure. They fall anywhere in a field. With this number, the mean wait for a
+/// retrace is known to a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates a rig with a tracker and the assumed pendulum, detection and photodiodes.
+    /// Creates a rig with the given tracker, and with the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
     }
 
-    /// Measures a pipeline on a machine.
+    /// Measures the latency of a pipeline on a machine.
     ///
     /// # Errors
     ///
@@ -128,8 +128,8 @@ impl Rig {
         Ok(measured.with_frames_counted_in_scan(counted.unwrap_or_default()))
     }
 
-    /// Returns the experiment of a measurement. At every sighting the reported head turns away from the lamp or back.
-    /// The experiment ends after the last frame must have been shown.
+    /// Returns the experiment of a measurement. At every reported low point the simulated head turns away from the lamp
+    /// or back. The experiment is long enough for the last frame to be shown.
     fn experiment(
         &self,
         machine: &MachineConfig,
@@ -159,7 +159,7 @@ impl Rig {
     }
 }
 
-/// Refuses pipelines whose light under a photodiode does not show when a frame appears.
+/// Returns an error for a pipeline whose light under a photodiode does not show when a frame appears.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), RigRunError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -176,18 +176,18 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
     Ok(())
 }
 
-/// Returns the time in picoseconds between the retrace that begins a period and an instant within the period.
+/// Returns the time in picoseconds from the retrace at which a period begins to an instant within this period.
 fn behind_the_retrace(record: &Record, instant: Time) -> u64 {
     instant.since(record.tick(record.display().period_at(instant))).0
 }
 
-/// Returns the pose with the lamp behind the viewer's shoulder, which makes dark frames.
+/// Returns the head pose that makes dark frames: the lamp is behind the viewer.
 fn away() -> Pose {
     Pose { position: DVec3::ZERO, orientation: rotation::about_y(FRAC_PI_2) }
 }
 
 /// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
-/// from the wall. Its two triangles are the minimal data set.
+/// from the wall. The wall's two triangles are the minimal data set.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
@@ -215,18 +215,18 @@ fn lamp() -> Scene {
     .expect("a quadrangle is a scene")
 }
 
-/// The photodiode on the screen, in the middle of a line, with a sample for each pass of the beam.
+/// A photodiode in the middle of a line of the screen, with a sample for each pass of the beam.
 struct Photodiode {
     line: u32,
-    /// Longest time from the tick of a period to the beam's pass over the photodiode, in picoseconds.
+    /// Longest time in picoseconds from the beginning of a period to the beam's pass over the photodiode.
     place_ps: u64,
-    /// Time of each pass of the beam in picoseconds, and true if the pixel was light.
+    /// Time in picoseconds of each pass of the beam over the photodiode, and true if the pixel was light.
     samples: Vec<(u64, bool)>,
-    /// Number of messages that the ring had carried by the end of each period, and true if no message was on its way.
+    /// Number of messages that the ring had carried by the end of each period, and true if no message was under way.
     ring: Vec<(u64, bool)>,
 }
 
-/// Minimum mean of red, green and blue for a light pixel: half the value of a white wall.
+/// Minimum mean of red, green and blue of a pixel that counts as light: half the value of a white wall.
 const LIGHT: u32 = 128;
 
 impl Photodiode {
@@ -234,8 +234,8 @@ impl Photodiode {
         Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
     }
 
-    /// Runs an experiment and samples the photodiode. A run is long enough here even if it shows fewer pictures than
-    /// a pipeline needs to fill.
+    /// Runs an experiment and samples the photodiode. A run that ends before it can fill the pipeline with pictures is
+    /// accepted here.
     fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
         self.check(experiment.build()?.record().display())?;
         let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
@@ -259,7 +259,7 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(RigRunError::Photodiode { lines, found }) }
     }
 
-    /// Samples the photodiode in a finished period.
+    /// Samples the photodiode in a period that has ended.
     fn look(&mut self, period: PeriodNumber, machine: &mut Machine) {
         let record = machine.record();
         let display = record.display();
@@ -275,9 +275,9 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago, when the same line was lit, if no message has been on the ring since
-    /// that period began. The screen of an idle machine does not change. (The ring is read one period later than the
-    /// screen.)
+    /// Returns the sample of two periods ago, if no message has been on the ring since the beginning of that period.
+    /// The same line was lit then, and the screen of an idle machine does not change. (The ring is read one period
+    /// later than the screen.)
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -285,13 +285,13 @@ impl Photodiode {
     }
 }
 
-/// Returns the mean of red, green and blue of a pixel at its light in a period, or 0 if no picture was shown.
+/// Returns the mean of red, green and blue of a pixel when it is lit in a period, or 0 if no picture was shown.
 fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u32 {
     let seen = display.seen(0, period);
     seen.map_or(0, |picture| picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3)
 }
 
-/// Returns the first complete picture of each sighting, by the pipeline's records.
+/// Returns the first complete picture after each reported low point, according to the pipeline's records.
 fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, RigRunError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =
@@ -308,7 +308,7 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
     if found.len() == expected { Ok(found) } else { Err(RigRunError::NotShown { expected, found: found.len() }) }
 }
 
-/// Returns the time at which a program sampled the pose for a frame and switched the D/A line. Under Rendering
+/// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
 /// Control the host does so when SEND begins. Under Slats the graphics processor does so when a field begins.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();

@@ -1,11 +1,14 @@
-//! Saving and restoring a run at the boundary of a field.
+//! Saves and restores a run at the boundary between two display fields.
 //!
-//! A snapshot is a **replay snapshot**. It does not hold the state of the boards, because their programs are
-//! suspended `async` functions, whose state cannot be serialized. It holds the data that determine this state: the
-//! experiment, the identity of the scene, and the field. It also holds the trace hash and the number of events, which
-//! identify the state. To restore a snapshot, the run is repeated up to its field without computing pixels, compared,
-//! and continued. A restored run is therefore identical to the original run, which every restoration checks.
-//! Restoring takes as long as the simulation did (thousands of fields a second for small scenes).
+//! A snapshot is a **replay snapshot**. It does not hold the state of the boards, because their programs are suspended
+//! `async` functions, whose state cannot be serialized. Instead, the snapshot holds the data that determine this state:
+//! the experiment, the identity of the scene, and the field. It also holds the trace hash and the number of events,
+//! which identify the state.
+//!
+//! To restore a snapshot, the program repeats the run up to the saved field without computing pixels. It then compares
+//! the hash and number of events with the saved ones, and continues the run. A restored run is therefore identical to
+//! the original run. Restoring takes as long as the original simulation up to that field (thousands of fields a second
+//! for small scenes).
 //!
 //! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 
@@ -19,7 +22,7 @@ use serde_json::Value;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// The data that repeat a run up to a field and verify the repeated run.
+/// The data that repeat a run up to a field, and the hashes that verify the repeated run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
@@ -35,7 +38,7 @@ pub struct Snapshot {
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Field whose first retrace is the instant of the snapshot. No event of this field has happened.
+    /// Number of the field whose first retrace is the instant of the snapshot. No event of this field has happened yet.
     pub field: PeriodNumber,
     /// Instant of the snapshot in picoseconds.
     pub time_ps: u64,
@@ -53,54 +56,54 @@ pub struct Snapshot {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SnapshotError {
-    /// A file that is not a snapshot.
+    /// The file is not a snapshot.
     #[error("{file}: this is no snapshot: {reason}")]
     Foreign {
-        /// Name of the file, as the user gave it.
+        /// Name of the file, as given by the user.
         file: String,
-        /// Error in the text of the file.
+        /// Description of the error in the text of the file.
         reason: String,
     },
-    /// A snapshot whose layout has another version.
+    /// The snapshot has a layout of another version.
     #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
     Version {
-        /// Name of the file, as the user gave it.
+        /// Name of the file, as given by the user.
         file: String,
-        /// Layout that this version reads.
+        /// Name and version of the layout that this program reads.
         expected: &'static str,
-        /// Layout that the file names.
+        /// Name and version of the layout stated in the file.
         found: String,
     },
-    /// A snapshot that was changed after it was written.
+    /// The snapshot was changed after it was written.
     #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
     Damaged {
-        /// Name of the file, as the user gave it.
+        /// Name of the file, as given by the user.
         file: String,
         /// Checksum computed from the contents.
         expected: String,
         /// Checksum in the file.
         found: String,
     },
-    /// A snapshot whose experiment this version cannot read.
+    /// This version of the program cannot read the experiment in the snapshot.
     #[error("{file}: {error}")]
     Experiment {
-        /// Name of the file, as the user gave it.
+        /// Name of the file, as given by the user.
         file: String,
-        /// Error of the experiment file.
+        /// Error of the experiment file in the snapshot.
         error: Box<FileError>,
     },
-    /// A repeated run that differs from the saved run.
+    /// The repeated run differs from the saved run.
     #[error(
         "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
     )]
     Differs {
-        /// Name of the file, as the user gave it.
+        /// Name of the file, as given by the user.
         file: String,
         /// Version of the program that saved the snapshot.
         version: String,
-        /// First value that differs: a fingerprint, a hash or a number.
+        /// Name of the first value that differs: a fingerprint, a hash or a number of events.
         what: &'static str,
-        /// Value when the snapshot was saved.
+        /// Value in the saved snapshot.
         expected: String,
         /// Value in the repeated run.
         found: String,
@@ -111,7 +114,7 @@ impl Snapshot {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Creates a snapshot of a machine that has reached the first retrace of a field.
+    /// Creates a snapshot of a machine that has just reached the first retrace of a field.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -145,7 +148,7 @@ impl Snapshot {
         text
     }
 
-    /// Reads the text of a snapshot's file. Error messages refer to the file as `file`.
+    /// Reads the text of a snapshot's file. Error messages call the file `file`.
     ///
     /// # Errors
     ///
@@ -185,7 +188,7 @@ impl Snapshot {
         self.experiment_with(crate::registry(), file)
     }
 
-    /// Returns the saved experiment, with the pipelines and displays of a registry.
+    /// Returns the saved experiment, which may name the pipelines and displays of the given registry.
     ///
     /// # Errors
     ///
@@ -206,7 +209,7 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine, after the repeated run has reached the field, with the saved one.
+    /// Compares a machine with the saved one. The machine must have repeated the run up to the saved field.
     ///
     /// # Errors
     ///
@@ -245,7 +248,7 @@ mod tests {
     use pxpl5_measure::Measured;
     use pxpl5_run::Pixels;
 
-    /// Returns the plan, its snapshot at field 9, and its trace hash at the end.
+    /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");

@@ -1,4 +1,4 @@
-//! Tests of the pipelines that a machine can run.
+//! Tests which pipelines a machine can run.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Pause, PipelineEntry, PipelineSettings, Pixels, Registry};
@@ -7,7 +7,7 @@ use pxpl5_sim::Time;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Result of the test of one pipeline on a machine.
+/// Result of testing one pipeline on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Suitability {
     /// Name of the tested pipeline.
@@ -16,7 +16,7 @@ pub struct Suitability {
     pub lacks: Option<String>,
 }
 
-/// Tests every pipeline of a registry on a machine: a scene of one triangle is loaded, and all programs start.
+/// Tests every pipeline of a registry on a machine. A scene of one triangle is loaded, and all programs start.
 ///
 /// # Panics
 ///
@@ -31,8 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Time from the start by which a missing resource has caused an error. Programs reserve their memory before they
-/// first wait.
+/// Simulated time after which a missing resource has caused an error. Programs reserve their memory before they first
+/// wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(
@@ -74,8 +74,8 @@ mod tests {
         }
     }
 
-    /// A whole field finds no further reasons. The machines have all resources, or lack boards, or have too little
-    /// memory for the programs.
+    /// Tests that the start of a run finds the same reasons as a whole field. The machines have all resources, or lack
+    /// boards, or have too little memory for the programs.
     #[test]
     fn the_begin_of_a_run_says_what_a_whole_field_says() {
         let small = |n_gps, n_renderers, memory_bytes| {

@@ -1,34 +1,35 @@
-//! Effect of 10 % more of each resource of a machine.
+//! Computes the effect of 10 % more of each resource of a machine.
 
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Keep, Level, Pixels, Registry, Summary};
 use serde::Serialize;
 
-/// Effect of a change of the machine.
+/// Effect of one changed resource of the machine on latency and update rate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WhatIf {
-    /// The resource of which there is more.
+    /// Name of the resource of which the machine gets more.
     pub resource: &'static str,
     /// The setting that was changed, such as `machine.n_gps`.
     pub key: &'static str,
-    /// The value of the setting as it is, and as it was tried.
+    /// The current value of the setting.
     pub from: u64,
-    /// The value that was tried: 10 % better, and at least by one step.
+    /// The value that was tried: 10 % better, and changed by at least one step.
     pub to: u64,
-    /// Mean latency without and with the change, milliseconds; nothing where no picture was complete.
+    /// Mean latency in milliseconds without (first) and with (second) the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
-    /// Whole new pictures a second without and with the change; nothing where fewer than two were shown.
+    /// Number of complete new pictures per second without (first) and with (second) the change. `None` if fewer than
+    /// two were shown.
     pub updates_hz: [Option<f64>; 2],
-    /// The level of modelling that tells it: `analytic`, or that of the run.
+    /// The level of modelling that gave the results: `analytic`, or the level of the run.
     pub level: &'static str,
 }
 
-/// A resource with the setting that gives more of it.
+/// A resource of the machine, with the setting that gives more of it.
 struct Knob {
     resource: &'static str,
     key: &'static str,
-    /// True for a time, of which a smaller value is more.
+    /// True if the setting is a time, so that a smaller value is better.
     is_time: bool,
 }
 
@@ -42,7 +43,7 @@ const KNOBS: [Knob; 6] = [
 ];
 
 impl Knob {
-    /// Returns the setting's value on a machine.
+    /// Returns the value of the setting on a machine.
     fn value(&self, config: &MachineConfig) -> Option<u64> {
         let path = self.key.strip_prefix("machine.")?;
         match path {
@@ -52,7 +53,8 @@ impl Knob {
         }
     }
 
-    /// Returns the machine with 10 % more of the resource; `None` where the machine cannot have it.
+    /// Returns the machine with 10 % more of the resource, after the old and new value. `None` if the machine cannot
+    /// have more.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };
@@ -62,14 +64,15 @@ impl Knob {
     }
 }
 
-/// Returns what 10 % more of each resource would bring.
+/// Returns the effect of 10 % more of each resource.
 ///
-/// The pipeline's closed form tells it where it holds: without a head that is tracked. Else the experiment runs again for each resource,
-/// without pixels.
+/// If the head is not tracked and the pipeline has an analytic model (closed form), this model gives the effects.
+/// Otherwise the experiment runs again for each resource, without pixels.
 ///
 /// # Errors
 ///
-/// As [`Experiment::run`], of the experiment as it is. A changed one that cannot run has no numbers.
+/// Fails in the same cases as [`Experiment::run`] for the unchanged experiment. A changed experiment that cannot run
+/// has no results.
 pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatIf>, ExperimentError> {
     let by_form = experiment.clone().level(Level::Analytic).pixels(Pixels::Off);
     let is_analytic = experiment.tracked_head().is_none();

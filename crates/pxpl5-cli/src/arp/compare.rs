@@ -1,4 +1,4 @@
-//! The command `pxpl5 arp compare`, which compares all policies and warps on one walk.
+//! The command `pxpl5 arp compare`. Compares all policies (rules for what is drawn when) and warps on one walk.
 
 use super::run::widths;
 use super::settings::WalkArgs;
@@ -61,7 +61,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// Name of a table column and the function that formats its cell of a row.
+/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparedRow) -> String);
 
 const COLUMNS: [Column; 10] = [

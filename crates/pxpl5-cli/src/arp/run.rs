@@ -1,4 +1,4 @@
-//! The command `pxpl5 arp run`, which simulates one walk.
+//! The command `pxpl5 arp run`, which simulates one walk along a path.
 
 use super::settings::{WalkArgs, put};
 use crate::error::CliError;
@@ -71,8 +71,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Returns frames.csv: for each frame the position of the eye, and for each memory whether an update was due, shown
-/// or missed.
+/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory it has
+/// true or false for an update that was due, shown or missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
@@ -135,7 +135,7 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// Returns the mean latency from a step of the head to the light of each memory's picture, in ms.
+/// Returns the mean latency from a step of the head to the display of each memory's picture, in ms.
 fn steps(report: &Report) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
@@ -155,8 +155,8 @@ fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "-".to_owned())
 }
 
-/// Formats the median, the 95th percentile and the maximum of widths. Widths below 1e-6 are rounding errors and
-/// appear as 0.
+/// Formats the median, the 95th percentile and the maximum of a set of widths. Widths below 1e-6 are rounding errors
+/// and appear as 0.
 pub(super) fn widths(widths: Option<Percentiles>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
     or_none(widths.map(|Percentiles { p50, p95, max }| [p50, p95, max].map(number).join(", ")))

@@ -1,4 +1,4 @@
-//! Options of `pxpl5 arp` that describe a walk. Each option is short for a path of `--set`.
+//! Options of `pxpl5 arp` that describe a walk (frames seen along a path). Each option stands for a path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -60,15 +60,14 @@ pub(super) struct WalkArgs {
     pub(super) quiet: bool,
 }
 
-/// Path of the lens setting. Its value may name a file with a lens table.
+/// Path of the lens setting. The value of this setting can name a file with a lens table.
 const LENS: &str = "arp.lens";
 
-/// Settings as tuples of path, value, and the file or option that gave the value.
+/// Settings as tuples of path, value, and origin: the file or option that gave the value.
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene and the plan of the walk, and prints a warning for every number outside its documented
-    /// range.
+    /// Returns the scene and the plan of the walk. Prints a warning for every number outside its documented range.
     ///
     /// # Errors
     ///
@@ -96,7 +95,7 @@ impl WalkArgs {
         Ok((scene, plan))
     }
 
-    /// Refuses to start `walks` walks if their estimated time or memory exceeds the budget.
+    /// Returns an error if the estimated time or memory of `walks` walks exceeds the budget.
     ///
     /// # Errors
     ///
@@ -121,7 +120,7 @@ impl WalkArgs {
         Ok(plan.settings()?.display)
     }
 
-    /// Returns the scene's name and all settings in the order in which they apply: file, options, `--set`.
+    /// Returns the scene's name, and all settings in the order in which they apply: file, options, `--set`.
     fn said(&self) -> Result<(String, GivenSettings), CliError> {
         let mut said = GivenSettings::new();
         let mut scene = "gallery".to_owned();
@@ -187,7 +186,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder, with the data of their origin in each PNG.
+/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce it.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The command `pxpl5 arp texel`, which prints the texels that one pixel shows.
+//! The command `pxpl5 arp texel`, which prints the texels of the cube faces that one pixel shows.
 
 use super::settings::WalkArgs;
 use crate::error::CliError;
@@ -57,14 +57,14 @@ pub(super) fn run(args: TexelArgs) -> Result<(), CliError> {
     print(&text(&args, &display, &footprint))
 }
 
-/// Returns the quaternion (x, y, z, w) of yaw about y, then pitch about x, then roll about z.
+/// Returns the quaternion (x, y, z, w) of a rotation: yaw about y, then pitch about x, then roll about z.
 fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
     let [(sy, cy), (sp, cp), (sr, cr)] = degrees.map(|angle| (angle.to_radians() / 2.0).sin_cos());
     [cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr, cy * cp * sr - sy * sp * cr, cy * cp * cr + sy * sp * sr]
 }
 
-/// Returns the four texels of a footprint with weights that sum to 1. At a cube corner the fourth texel does not
-/// exist (`None`); its weight belongs to the mean of the other three.
+/// Returns the four texels that a pixel shows, with weights that sum to 1. At a cube corner the fourth texel does not
+/// exist (`None`). Its weight then applies to the mean of the other three.
 fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>, f64); 4] {
     let weights = footprint.weights(display.timing.weight_bits);
     let one = f64::from(1_u32 << (2 * display.timing.weight_bits));

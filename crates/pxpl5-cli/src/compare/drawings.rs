@@ -19,7 +19,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     ]
 }
 
-/// Returns the rows whose pictures were evaluated.
+/// Returns the rows in which at least one pixel was evaluated.
 fn judged(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
     comparison.pipelines.iter().filter(|row| row.was_evaluated())
 }
@@ -82,7 +82,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
     ChartAxes { title, across: across.to_owned(), up: up.to_owned() }
 }
 
-/// Name of a table column and the function that formats its cell of a row.
+/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
 const COLUMNS: [Column; 24] = [
@@ -112,8 +112,8 @@ const COLUMNS: [Column; 24] = [
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];
 
-/// Returns rows.csv, with one line for each pipeline and the column names of comparison.json. The last columns hold
-/// the error under each predictor and by each cause. Cells without an evaluation are empty.
+/// Returns the text of rows.csv. Each line is for one pipeline, and columns have the names of comparison.json. The last
+/// columns hold the error under each predictor and by each cause. Cells without an evaluation are empty.
 fn rows_csv(comparison: &Comparison) -> String {
     let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
     // Names of columns equal the JSON paths of the same numbers.
@@ -137,12 +137,12 @@ fn rows_csv(comparison: &Comparison) -> String {
     csv_table(columns.collect::<Vec<String>>(), rows)
 }
 
-/// Returns a name in the spelling of the JSON output.
+/// Returns a name as it is spelled in the JSON output.
 fn written(name: serde_json::Result<Value>) -> String {
     name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-/// Returns errors.csv, with one line for each field of each pipeline in the first seed.
+/// Returns the text of errors.csv. Each line holds the errors of one display field of one pipeline, for the first seed.
 fn errors_csv(comparison: &Comparison) -> String {
     let rows = judged(comparison).flat_map(|row| {
         row.by_field.iter().map(|field| {
@@ -158,12 +158,12 @@ fn errors_csv(comparison: &Comparison) -> String {
     csv_table(["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
 }
 
-/// Formats a count, or returns an empty cell for `None`.
+/// Formats a count as a cell. The cell is empty for `None`.
 fn count(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// Formats a number, or returns an empty cell for NaN and infinity.
+/// Formats a number as a cell. The cell is empty for NaN and infinity.
 fn number(value: f64) -> String {
     if value.is_finite() { value.to_string() } else { String::new() }
 }

@@ -9,7 +9,7 @@ use pxpl5::compare::{Comparison, ComparisonRow, LastPicture};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
-/// Writes a picture for each row, the ideal pictures, and a page of all pictures.
+/// Writes a picture for each row, the ideal pictures, and a page that shows all of them.
 ///
 /// # Errors
 ///
@@ -33,12 +33,12 @@ pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<
     folder.put("gallery.html", html_of_tables(&[page]).as_bytes())
 }
 
-/// The gallery page under construction.
+/// The gallery page while it is built.
 struct Gallery<'a> {
     folder: &'a mut OutputFolder,
     comparison: &'a Comparison,
     pictures: Vec<PagePicture>,
-    /// Ideal pictures that are already on the page. Pipelines with the same shading share one picture.
+    /// Ideal pictures that are already on the page. Pipelines with the same shading share one ideal picture.
     ideals: Vec<&'a RgbImage>,
 }
 
@@ -73,7 +73,7 @@ impl<'a> Gallery<'a> {
     }
 }
 
-/// Returns the caption of a picture: the pipeline, its latency from head to light, and its error in pixels.
+/// Returns the caption of a picture: the pipeline, its latency from head to display, and its error in pixels.
 fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     let mut caption = row.pipeline.clone();
     if !last.is_complete {
@@ -89,7 +89,7 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     caption
 }
 
-/// Returns lines that describe the run, and a line for each row without a picture.
+/// Returns lines of text that describe the run, and a line for each row without a picture.
 fn about(comparison: &Comparison) -> Vec<String> {
     let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
     let seed = seeds.first().copied().unwrap_or_default();

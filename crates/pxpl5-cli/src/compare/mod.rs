@@ -75,10 +75,10 @@ pub(crate) struct CompareArgs {
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
-/// Default number of fields of each run: five seconds.
+/// Default number of display fields in each run: five seconds.
 const FIELDS: i64 = 300;
 
-/// Maximum speed of the pan in the edge pictures, in degrees per second.
+/// Maximum speed of the head's rotation (pan) for the pictures of a vertical edge, in degrees per second.
 const FASTEST: f64 = 10_000.0;
 
 fn pan(text: &str) -> Result<f64, String> {
@@ -139,7 +139,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the line that tells of a row whose runs have ended.
+/// Returns the progress line to print when all runs of a row have ended.
 fn ended(row: &ComparisonRow, [done, all]: [u64; 2], seconds: f64) -> String {
     let left = seconds / done as f64 * all.saturating_sub(done) as f64;
     let error = row.error.mean_px.mean;
@@ -162,7 +162,7 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Returns the settings shared by all rows, with defaults for absent keys.
+/// Returns the settings shared by all rows. Keys that are not set get the defaults of a comparison.
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     if let Some(place) = file.place_of("pipeline") {
         return Err(CliError::usage(format!(
@@ -194,8 +194,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
     Ok(())
 }
 
-/// Returns the machine of the edge pictures: the machine of the comparison as the pipeline `jitp-field` configures
-/// it.
+/// Returns the machine for the pictures of a vertical edge: the machine of the comparison as the pipeline `jitp-field`
+/// configures it.
 fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
     let mut file = query.shared.clone();
     file.set("pipeline", "jitp-field", "compare")?;

@@ -23,7 +23,7 @@ const COLUMNS: [(&str, &str, usize); 14] = [
     ("triangles", "possible", 10),
 ];
 
-/// Width of the column of pipeline names, in characters.
+/// Width in characters of the column with the pipelines' names.
 const NAME: usize = 24;
 
 /// Returns the comparison as text for the terminal.
@@ -64,14 +64,14 @@ fn header() -> String {
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
 }
 
-/// Returns the name of a row with its marks.
+/// Returns the name of a row, followed by its marks (symbols that refer to remarks).
 fn name(comparison: &Comparison, row: &ComparisonRow) -> String {
     let missing = if row.shows_all() { "" } else { "!" };
     let late = if comparison.starts_late(row) { "+" } else { "" };
     format!("{}{missing}{late}", row.pipeline)
 }
 
-/// Returns the sentence that names the row with the least error.
+/// Returns a sentence that names the row with the least mean error.
 fn best(comparison: &Comparison) -> String {
     let Some(best) = comparison.best() else {
         return "\nNo row showed every picture that was due.\n".to_owned();
@@ -114,7 +114,7 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
     format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 
-/// Returns the table of the error by cause.
+/// Returns the table of the contributions of causes to the error.
 fn causes(comparison: &Comparison) -> String {
     let mut text = format!("\n{:<NAME$}", "error by cause, px");
     for cause in Cause::ALL {

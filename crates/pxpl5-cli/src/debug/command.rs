@@ -13,7 +13,7 @@ pub(super) enum Command {
     RunTo(Time),
     RunToField(PeriodNumber),
     RunUntil(Condition),
-    /// Runs to the next event of a board.
+    /// Runs until the next event of a board.
     Next(Board),
     Step(u64, StepOf),
     Show(Pane),
@@ -25,14 +25,14 @@ pub(super) enum Command {
     Registers(Board),
     Disassemble(Board, Option<String>, u64),
     Memory(Board, String, u64),
-    /// Shows the bits of a pixel, given by renderer, column and row.
+    /// Shows the bits of a pixel. The three numbers are the renderer, the column and the row.
     Pixel(u64, u64, u64),
     /// Shows a map of the enabled pixels of a renderer.
     Enabled(u64),
-    /// Shows or saves the picture that the beam has drawn on a surface, given by the surface's label and an optional
-    /// file.
+    /// Shows or saves the picture that the display's beam has drawn on a surface. The texts are the surface's label and
+    /// the name of a file, if any.
     Seen(String, Option<String>),
-    /// Shows or saves the ideal picture of a surface, given by the surface's label and an optional file.
+    /// Shows or saves the ideal picture of a surface. The texts are the surface's label and the name of a file, if any.
     Ideal(String, Option<String>),
     Help,
     Quit,
@@ -46,7 +46,7 @@ pub(super) enum StepOf {
     Field,
 }
 
-/// A pane of the debugger's screen.
+/// A pane (rectangular part) of the debugger's screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pane {
     Time,
@@ -90,13 +90,13 @@ pub(super) const HELP: [(&str, &str); 19] = [
     ("quit", "leave"),
 ];
 
-/// Splits a text at line ends and semicolons into commands, without comments and empty commands.
+/// Splits a text into commands at line ends and semicolons. Comments and empty commands are left out.
 pub(super) fn split(text: &str) -> Vec<String> {
     let commands = text.lines().flat_map(|line| line.split('#').next().unwrap_or_default().split(';'));
     commands.map(|command| command.trim().to_owned()).filter(|command| !command.is_empty()).collect()
 }
 
-/// Parses a command. A time with a leading `+` is relative to `now`.
+/// Parses a command. A time with a leading `+` is counted from `now`.
 ///
 /// # Errors
 ///
@@ -134,8 +134,8 @@ pub(super) fn parse(text: &str, now: Time) -> Result<Command, String> {
     }
 }
 
-/// Returns the error message for a line that is no command: the forms of the command `name`, or all command names if
-/// `name` is unknown.
+/// Returns the error message for a line that is not a command. The message shows the forms of the command `name`, or
+/// all command names if `name` is unknown.
 fn unknown(name: &str, text: &str) -> String {
     let forms: Vec<&str> =
         HELP.iter().map(|(form, _)| *form).filter(|form| form.split(' ').next() == Some(name)).collect();
@@ -148,7 +148,7 @@ fn unknown(name: &str, text: &str) -> String {
     format!("expected {}, found `{text}`", forms.join(" or "))
 }
 
-/// Returns the parsed board if no words are left after its name.
+/// Returns the parsed board, if no words follow its name.
 fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
     match rest {
         [] => Ok(board),
@@ -185,9 +185,9 @@ fn step(words: &[&str]) -> Result<Command, String> {
     Ok(Command::Step(count, kind))
 }
 
-/// Default number of instructions or words shown.
+/// Default number of instructions or memory words that a command shows.
 const SHOWN: u64 = 16;
-/// Maximum number of instructions or words shown.
+/// Maximum number of instructions or memory words that a command shows.
 const MOST: u64 = 4_096;
 
 fn count(words: &[&str]) -> Result<u64, String> {

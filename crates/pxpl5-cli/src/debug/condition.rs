@@ -3,24 +3,24 @@
 use super::words::{board, number};
 use pxpl5::{Board, Stepper};
 
-/// A condition that stops a run.
+/// A condition at which the debugger stops a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
-    /// A surface or a display memory has swapped since the run was resumed.
+    /// A surface or a display memory has swapped its buffers since the run was resumed.
     Swap,
     /// A region has arrived at a display since the run was resumed.
     Region,
-    /// Comparison with the number of words in a renderer's input FIFO.
+    /// The number of words in the input FIFO of the renderer with this index satisfies a comparison.
     Fifo(usize, Comparison),
-    /// Comparison with the number of messages in the inbox of the host or a graphics processor.
+    /// The number of messages in the inbox of the host or a graphics processor satisfies a comparison.
     Inbox(Board, Comparison),
-    /// Comparison with the number of occupied ring channels.
+    /// The number of occupied ring channels satisfies a comparison.
     Channels(Comparison),
     /// A program on a board waits for an event whose name starts with this text.
     Waits(Board, String),
 }
 
-/// A relation and the number to compare with.
+/// A relation such as "at least", and the number to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Comparison {
     relation: Relation,
@@ -36,7 +36,7 @@ enum Relation {
     More,
 }
 
-/// Counts of swaps and arrivals at the instant when the run was resumed.
+/// Numbers of swaps and of arrived regions at the instant when the run was resumed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Before {
     swaps: usize,
@@ -95,7 +95,8 @@ impl Condition {
         }
     }
 
-    /// Returns true if the condition holds now.
+    /// Returns true if the condition is satisfied now. `before` has the numbers at the instant when the run was
+    /// resumed.
     pub(super) fn holds(&self, stepper: &Stepper, before: Before) -> bool {
         let observation = stepper.record().observation();
         // Swaps and arrivals count from the instant when the run was resumed.

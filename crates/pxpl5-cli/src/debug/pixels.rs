@@ -1,4 +1,4 @@
-//! Debugger views of pixels, in a renderer's array and on a display surface.
+//! Debugger views of pixels: in a renderer's pixel array, and on a display surface.
 
 use super::words::below;
 use image::RgbImage;
@@ -7,7 +7,7 @@ use pxpl5::run::bit_of;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 
-/// Columns and rows of a pixel array.
+/// Number of columns, and of rows, of a renderer's pixel array.
 const SIDE: u64 = 128;
 
 fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {
@@ -16,7 +16,7 @@ fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), S
     found.ok_or_else(|| format!("renderer {number} has executed no commands that change pixels (or --pixels off)"))
 }
 
-/// Returns the fields of a pixel's memory as text.
+/// Returns the contents of a pixel's memory, divided into named bit fields, as text.
 pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<String, String> {
     let x = below("column", &x.to_string(), SIDE)?;
     let y = below("row", &y.to_string(), SIDE)?;
@@ -67,14 +67,14 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
     })
 }
 
-/// Describes the picture that the beam has drawn so far, and saves the picture if a file is given.
+/// Describes the picture that the display's beam has drawn so far. Saves the picture if a file is given.
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let picture = stepper.seen(id).ok_or_else(|| format!("nothing can be said of {label}"))?;
     describe_picture(&picture, label, file)
 }
 
-/// Describes the ideal picture at the current time, and saves the picture if a file is given.
+/// Describes the ideal picture at the current time. Saves the picture if a file is given.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("there is no ideal picture of {label}"))?;

@@ -1,4 +1,4 @@
-//! The debugger's terminal screen: panes of machine state, command output, and an input line.
+//! The debugger's terminal screen: panes that show the machine's state, command output, and an input line.
 
 use super::command::Pane;
 use super::session::Session;
@@ -17,16 +17,16 @@ struct ScreenState {
     line: String,
     /// Executed command lines, oldest first.
     history: Vec<String>,
-    /// Number of lines by which the user has moved back in the history.
+    /// Number of command lines by which the user has moved back in the history.
     back: usize,
-    /// Lines by which the pane of boards is scrolled.
+    /// Number of lines by which the pane of boards is scrolled.
     scroll: u16,
 }
 
-/// Minimum terminal width, in columns, for panes side by side.
+/// Minimum width of the terminal, in columns, at which panes are placed side by side.
 const WIDE: u16 = 100;
 
-/// Maximum number of log lines kept.
+/// Maximum number of output lines that the log keeps.
 const LOG: usize = 2_000;
 
 /// Runs the screen until the user quits.
@@ -58,7 +58,7 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     result
 }
 
-/// Returns true if a key was pressed during a run. The session then interrupts the run.
+/// Returns true if the user pressed a key during a run. The session then interrupts the run.
 fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }
@@ -87,7 +87,7 @@ fn pressed(session: &mut Session, talk: &mut ScreenState, key: KeyEvent) {
     }
 }
 
-/// Puts the history line `back` lines before the newest into the input line, or clears the line if `back` is 0.
+/// Copies a line of the history into the input line. `back` counts from the newest line; 0 clears the input line.
 fn recall(talk: &mut ScreenState, back: usize) {
     talk.back = back.min(talk.history.len());
     let place = talk.history.len() - talk.back;
@@ -121,7 +121,7 @@ fn draw(frame: &mut Frame<'_>, session: &Session, talk: &ScreenState) {
     frame.set_cursor_position(Position::new(column.min(line.width.saturating_sub(1)), line.y));
 }
 
-/// Returns the areas of the panes in order: time, boards, waits, ring, timeline.
+/// Returns the screen areas of the panes in this order: time, boards, waits, ring, timeline.
 fn panes(area: Rect) -> [Rect; 5] {
     if area.width < WIDE {
         let rows =

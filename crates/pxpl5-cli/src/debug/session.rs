@@ -11,11 +11,11 @@ use pxpl5::{Board, Pause, Span, Stepper, Time};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// The run under the debugger and the user's breakpoints.
+/// A debugger session: the simulated run and the user's breakpoints.
 pub(super) struct Session {
     stepper: Stepper,
     breakpoints: BTreeSet<u32>,
-    /// Processors and addresses that hit a breakpoint at the most recent stop.
+    /// Processors that hit a breakpoint at the most recent stop, with the addresses of the breakpoints.
     hits: Vec<BreakpointHit>,
     is_over: bool,
     /// Callback that returns true when the user wants to interrupt the run.
@@ -31,7 +31,7 @@ impl Session {
     }
 
     /// Returns the session with an interrupt callback. The run stops when `is_interrupted` returns true. The session
-    /// calls it once a field and every 10,000 events.
+    /// calls `is_interrupted` once per display field and every 10,000 events.
     #[cfg(feature = "screen")]
     pub(super) fn interrupted_by(self, is_interrupted: fn() -> bool) -> Self {
         Self { is_interrupted, ..self }
@@ -46,7 +46,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// Returns the expected form and the text found. The session is unchanged after an error.
+    /// Returns the expected form and the text found. After an error the session is unchanged.
     pub(super) fn execute_line(&mut self, line: &str) -> Result<String, String> {
         // Only `run`, `next` and `step` change the machine.
         match parse(line, self.stepper.now())? {
@@ -80,7 +80,7 @@ impl Session {
         }
     }
 
-    /// Returns the text of one pane of the screen.
+    /// Returns the text of one pane (rectangular part) of the screen.
     pub(super) fn pane(&self, pane: Pane) -> String {
         match pane {
             Pane::Time => views::time(&self.stepper),
@@ -145,7 +145,7 @@ impl Session {
         })
     }
 
-    /// Resumes the run with `piece` and returns the reason and place of the next stop.
+    /// Resumes the run by calling `piece`. Returns the reason and the simulated time of the next stop.
     fn go(&mut self, piece: impl FnOnce(&mut Stepper) -> Pause) -> String {
         let mut text = match piece(&mut self.stepper) {
             Pause::Reached => String::new(),
@@ -160,7 +160,7 @@ impl Session {
         text
     }
 
-    /// Describes the breakpoints of the last stop.
+    /// Describes the breakpoints that were hit at the last stop.
     fn met(&self) -> String {
         let mut text = String::new();
         for hit in &self.hits {

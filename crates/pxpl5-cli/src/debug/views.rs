@@ -1,4 +1,4 @@
-//! Text views of a run's state, used by the screen and by scripts.
+//! Text views of the state of a run, shown on the debugger's screen and printed by its scripts.
 
 use super::words::address;
 use i860::Program;
@@ -8,13 +8,13 @@ use pxpl5::{Board, Stepper};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Returns one line with the current time and field, and the last event if there is one.
+/// Returns one line with the current time and display field, and the last event if there is one.
 pub(super) fn place(stepper: &Stepper) -> String {
     let last = stepper.last().map_or_else(String::new, |last| format!(", {}: {}", last.board, last.what));
     format!("{}, field {}{last}\n", ms(stepper.now()), stepper.period())
 }
 
-/// Returns the time, the beam's line, the next event, and the hash of the trace so far.
+/// Returns the time, the line that the display's beam scans, the next event, and the hash of the trace so far.
 pub(super) fn time(stepper: &Stepper) -> String {
     let mut text = String::new();
     let fields = stepper.experiment().length();
@@ -52,13 +52,13 @@ pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     Ok(format!("{board}  {says}\n{details}"))
 }
 
-/// Returns one line for each blocked board and the board or event that the board waits for.
+/// Returns one line for each blocked board, with the board or event that it waits for.
 pub(super) fn waits(stepper: &Stepper) -> String {
     let blocked = stepper.machine().blocked();
     blocked.iter().map(|wait| format!("{:<12} waits for {}\n", wait.board, wait.waits_for)).collect()
 }
 
-/// Returns one line for each ring channel, and a line for each message that waits for a channel.
+/// Returns one line for each channel of the ring, and one line for each message that waits for a channel.
 pub(super) fn ring(stepper: &Stepper) -> String {
     let ports = stepper.record().ports();
     let on = stepper.channels();
@@ -85,10 +85,10 @@ pub(super) fn ring(stepper: &Stepper) -> String {
     text
 }
 
-/// Maximum number of stages shown.
+/// Maximum number of picture stages that the timeline shows.
 const STAGES: usize = 12;
 
-/// Returns the most recent stages of pictures, newest first. Stages that have not begun are left out.
+/// Returns the most recent stages of pictures, newest first. Stages that begin in the future are left out.
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
@@ -111,7 +111,7 @@ pub(super) fn timeline(stepper: &Stepper) -> String {
     text
 }
 
-/// Checks that the machine has a board.
+/// Checks that the machine has a board with this name.
 ///
 /// # Errors
 ///
@@ -130,11 +130,11 @@ pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
     Err(format!("expected {what} 0 to {}, found {board}", count - 1))
 }
 
-/// Returns a processor board whose time comes from executed i860 code.
+/// Returns a processor board that executes i860 code for its timing.
 ///
 /// # Errors
 ///
-/// Fails if the board runs no code (`--level cycle` is off).
+/// Fails if the board executes no code, because the run was started without `--level cycle`.
 pub(super) fn with_code(stepper: &Stepper, board: Board) -> Result<&GpBoard, String> {
     check(stepper, board)?;
     let found = stepper.machine().board(board).filter(|gp| gp.with_processor(|_| ()).is_some());
@@ -160,8 +160,8 @@ pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, Strin
     program.map(|program| program.base).ok_or_else(|| format!("{board} has run no code yet"))
 }
 
-/// Returns the address that `text` gives as a number or label. A label is looked up in the code of `board`, or in the
-/// code of all graphics processors if `board` is `None`.
+/// Returns the address that `text` denotes, as a number or a label. A label is looked up in the code of `board`, or in
+/// the code of all graphics processors if `board` is `None`.
 ///
 /// # Errors
 ///
@@ -195,7 +195,7 @@ pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
     labels.filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
 }
 
-/// Returns `count` words of a board's memory from address `at`.
+/// Returns `count` words of a board's memory, beginning at address `at`.
 ///
 /// # Errors
 ///

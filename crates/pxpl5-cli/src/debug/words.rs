@@ -1,16 +1,17 @@
-//! Parsers of times, addresses and numbers in debugger commands. An error states the expected form and the text
+//! Parsers of times, addresses and numbers in debugger commands. An error message states the expected form and the text
 //! found.
 
 use pxpl5::{Board, Span, Time};
 
-/// Parses a time such as `12.5ms`, `300us`, `40ns` or `7ps`. With a leading `+` the time is relative to `now`.
+/// Parses a time such as `12.5ms`, `300us`, `40ns` or `7ps`. A time with a leading `+` is counted from `now`.
 pub(super) fn time(text: &str, now: Time) -> Result<Time, String> {
     let refused = || format!("expected a time such as 12.5ms, 300us, 40ns or +1ms, found `{text}`");
     let (begin, length) = text.strip_prefix('+').map_or((Time::ZERO, text), |length| (now, length));
     span(length).map(|span| begin + span).ok_or_else(refused)
 }
 
-/// Parses a duration exactly, in picoseconds. Digits below one picosecond are refused, so nothing is rounded.
+/// Parses a duration exactly, in picoseconds. A text with digits below one picosecond is an error, so that nothing is
+/// rounded.
 fn span(text: &str) -> Option<Span> {
     // Split the number from its unit.
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -41,7 +42,7 @@ pub(super) fn number(what: &str, text: &str) -> Result<u64, String> {
     parsed.map_err(|_| format!("{what}: expected a whole number, found `{text}`"))
 }
 
-/// Parses a whole number below `bound`.
+/// Parses a whole number that must be less than `bound`.
 pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
     let found = number(what, text)?;
     if found < bound {
@@ -64,7 +65,7 @@ pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), 
     Ok((first.parse()?, rest))
 }
 
-/// Parses an address of `0x` and hexadecimal digits.
+/// Parses an address written as `0x` and hexadecimal digits.
 pub(super) fn address(text: &str) -> Option<u32> {
     u32::from_str_radix(text.strip_prefix("0x")?, 16).ok()
 }

@@ -136,7 +136,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     }
 }
 
-/// Parses a memory size of at most 1 GiB. The limit bounds the second copy of the memory that a run keeps.
+/// Parses a memory size of at most 1 GiB. The size is limited because a run keeps a second copy of the memory.
 fn memory(text: &str) -> Result<u32, String> {
     let most = 1 << 30;
     Some(address(text)?)
@@ -153,7 +153,7 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Returns an assembled program and its source. Comments in the source may have any text encoding.
+/// Assembles a file. Returns the program and its source text. Comments in the source may have any text encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -194,7 +194,7 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
     Ok(Program::of_bytes(base, read(file)?))
 }
 
-/// Runs a file of vectors, and returns the report and the number of failed vectors.
+/// Runs a file of conformance vectors. Returns the report and the number of failed vectors.
 fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize), String> {
     let text = text_of(file, unpacked(file, read(file)?, MOST_VECTOR_BYTES)?)?;
     let list = vectors::parse(&text).map_err(|e| format!("{}: {e}", file.display()))?;
@@ -203,8 +203,8 @@ fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize)
     Ok((report, summary.failed()))
 }
 
-/// Maximum unpacked size of a file of vectors, in bytes. Assumed: about ten times the published set. The limit guards
-/// against gzip bombs.
+/// Maximum unpacked size of a file of conformance vectors, in bytes. Assumed: about ten times the published set. The
+/// limit guards against gzip bombs.
 const MOST_VECTOR_BYTES: u64 = 256 << 20;
 
 /// Returns the contents of a file, unpacked if the first two bytes are the gzip signature.
@@ -330,7 +330,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// A program that stores 7 at a label behind its code.
+    /// A program that stores the number 7 in the second word of a table behind its code.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
@@ -360,7 +360,7 @@ mod tests {
         assert_eq!(run["labels"]["start"], "00001000");
     }
 
-    /// Expects 1 + 4 + 9 + 16 = 30.
+    /// Expects the program's result 1 + 4 + 9 + 16 = 30.
     #[test]
     fn the_program_of_the_guide_runs_and_gives_what_it_says() {
         let page = include_str!("../../../../docs/guide/assembler.md");

@@ -5,7 +5,7 @@ use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// Options of one execution and its report.
+/// Options for one execution of an i860 program and for its report.
 pub(super) struct RunOptions {
     pub(super) entry: Option<String>,
     pub(super) stop: Option<String>,
@@ -19,25 +19,25 @@ pub(super) struct RunOptions {
 /// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
-/// Consecutive memory words and the address of the first.
+/// A range of consecutive memory words, with the address of the first.
 struct Span {
     address: u32,
     words: Vec<u32>,
 }
 
-/// A finished execution and the data of its report.
+/// A finished execution of an i860 program, with the data of its report.
 struct Run<'a> {
     program: &'a Program,
     cpu: Cpu,
     outcome: RunEnd,
     stop: u32,
     memory: Vec<Span>,
-    /// Number of changed words that the report leaves out.
+    /// Number of changed memory words that the report leaves out.
     changed_besides: usize,
 }
 
-/// Runs a program, and returns the report and the result of the execution. The inner result is an error if the
-/// program did not reach its stop address.
+/// Runs a program. Returns the report, and the result of the execution. The inner result is an error if the program did
+/// not reach its stop address.
 ///
 /// # Errors
 ///
@@ -66,7 +66,8 @@ pub(super) fn execute(program: &Program, options: &RunOptions) -> Result<(String
     Ok((text, run.result()))
 }
 
-/// Returns the address of `option`, or of the default label, or `otherwise` if the program lacks the label.
+/// Returns the address that `option` states. Without an option, returns the address of the default label, or
+/// `otherwise` if the program lacks this label.
 fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -> Result<u32, String> {
     match option {
         None => Ok(program.symbol(label).unwrap_or(otherwise)),
@@ -91,7 +92,7 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
     })
 }
 
-/// Parses `PLACE` or `PLACE:WORDS`.
+/// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns its address and its number of words.
 fn span(program: &Program, text: &str) -> Result<(u32, usize), String> {
     let Some((at, words)) = text.rsplit_once(':') else { return Ok((known(program, text)?, 1)) };
     let count = words.parse().ok().filter(|count| (1..=65_536).contains(count));
@@ -105,7 +106,7 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// Returns the first changed words, joined into spans, and the number of changed words beyond the limit.
+/// Returns the first changed memory words, joined into ranges, and the number of changed words beyond the limit.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {
         ram.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
@@ -140,7 +141,7 @@ impl Run<'_> {
         }
     }
 
-    /// Formats an address, with the nearest label before the address if one exists.
+    /// Formats an address, together with the nearest label before the address if one exists.
     fn named(&self, address: u32) -> String {
         label_of(self.program, address)
             .map_or_else(|| format!("{address:#x}"), |label| format!("{address:#x} ({label})"))
@@ -155,7 +156,7 @@ impl Run<'_> {
         text
     }
 
-    /// Returns the clocks between each label and the next.
+    /// Returns the clocks spent between each label and the next.
     fn clocks_by_label(&self) -> Vec<(&str, u64)> {
         let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
         let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();
@@ -240,7 +241,7 @@ impl Run<'_> {
     }
 }
 
-/// Returns the nearest label at or before an address of the program, with the distance in bytes.
+/// Returns the nearest label at or before an address of the program, with the distance from the label in bytes.
 fn label_of(program: &Program, address: u32) -> Option<String> {
     let end = program.base.wrapping_add(program.bytes.len() as u32);
     if !(program.base..=end).contains(&address) {

@@ -1,4 +1,4 @@
-//! Files that appear together. All files that the command writes pass through this module.
+//! Output files that get their final names together. All files that the command writes pass through this module.
 
 use super::target::{Place, Target};
 use crate::error::CliError;
@@ -8,44 +8,45 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Outputs that are complete but do not have their final names yet.
+/// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Description of the output for error messages.
+    /// Place of the output, for error messages.
     place: Place,
     files: Vec<Staged>,
-    /// Files of the previous run to delete after all new files have their names.
+    /// Files of the previous run. They are deleted after all new files have their names.
     gone: Vec<PathBuf>,
-    /// Data for devices, pipes and standard output. A write to them cannot be undone, so it comes last.
+    /// Data for devices, pipes and standard output. Written last, because such a write cannot be undone.
     streams: Vec<(Target, Vec<u8>)>,
 }
 
-/// A complete file under a temporary name.
+/// A complete file that still has its temporary name.
 #[derive(Debug)]
 struct Staged {
     temporary: PathBuf,
     name: PathBuf,
-    /// Locked handle of the file, by which other processes see that its writer is alive. `None` if no handle exists.
+    /// Locked handle of the file. The lock shows other processes that the writer of the file is alive. `None` if no
+    /// handle exists.
     lock: Option<File>,
 }
 
-/// A name that `commit` has changed, with the path that keeps its previous contents.
+/// A file name that `commit` has changed, with the path at which its previous contents are kept.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
 }
 
-/// Prefix of every temporary name.
+/// Prefix of the name of every temporary file.
 const TEMPORARY: &str = ".pxpl5-";
 
-/// Returns a name in the folder of `path` that no other output of any process has.
+/// Returns a file name in the folder of `path` that no other output of any process uses.
 fn beside(path: &Path, end: &str) -> PathBuf {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     path.with_file_name(format!("{TEMPORARY}{}-{number}.{end}", std::process::id()))
 }
 
-/// Returns true for names of the form that [`beside`] returns.
+/// Returns true if a file name has the form that [`beside`] returns.
 fn is_temporary(name: &OsStr) -> bool {
     let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -56,9 +57,9 @@ fn is_temporary(name: &OsStr) -> bool {
     })
 }
 
-/// Removes temporary files of processes that ended without removing them. A file is left over if no process holds its
-/// lock. The caller must hold the folder's lock, so that no process is between creating and locking a file, or
-/// replacing files.
+/// Removes temporary files of processes that ended without removing them. Such a file can be recognized, because no
+/// process holds its lock. The caller must hold the folder's lock. Otherwise another process may be between creating
+/// and locking a file, or replacing files.
 pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
@@ -77,7 +78,8 @@ impl Batch {
         Self { place, files: Vec::new(), gone: Vec::new(), streams: Vec::new() }
     }
 
-    /// Writes a file under a temporary name, or keeps the data of another target until [`Batch::commit`].
+    /// Writes data for a regular file under a temporary name. Data for any other target are kept until
+    /// [`Batch::commit`].
     ///
     /// # Errors
     ///
@@ -111,7 +113,7 @@ impl Batch {
         written
     }
 
-    /// Moves the file that was put last to the front, so that it is renamed first.
+    /// Moves the most recently added file to the front, so that it is renamed first.
     pub(super) fn rename_last_file_first(&mut self) {
         let last = self.files.pop();
         self.files.splice(..0, last);
@@ -122,8 +124,8 @@ impl Batch {
         self.gone.push(path);
     }
 
-    /// Renames all files to their final names, then writes the streams. After a failure every name has its previous
-    /// contents.
+    /// Renames all files to their final names, then writes to devices, pipes and standard output. After a failure every
+    /// file name has its previous contents.
     ///
     /// # Errors
     ///
@@ -174,7 +176,7 @@ impl Batch {
         })
     }
 
-    /// Removes all files without a final name, and forgets the streams.
+    /// Removes all files that have no final name yet, and drops the data for devices, pipes and standard output.
     pub(super) fn discard(&mut self) {
         self.streams.clear();
         self.gone.clear();
@@ -193,7 +195,8 @@ impl Drop for Batch {
     }
 }
 
-/// Keeps the current contents of `name` under a second name, and copies their permissions to the file `next`.
+/// Keeps the current contents of the file `name` under a second name. Copies the permissions of `name` to the file
+/// `next`.
 fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     match name.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),

@@ -1,4 +1,4 @@
-//! Result files that appear all together and complete, or not at all.
+//! Output files that appear all together and complete, or not at all.
 
 mod batch;
 mod target;
@@ -17,44 +17,44 @@ use std::io;
 use std::path::{Path, PathBuf};
 use target::{Place, Target};
 
-/// A writable folder and the files that [`OutputFolder::commit`] will place there.
+/// A writable folder, and the files that [`OutputFolder::commit`] will place in this folder.
 #[derive(Debug)]
 pub(crate) struct OutputFolder {
     path: PathBuf,
     place: Place,
-    /// Folders created on the way to this folder, outermost first.
+    /// Folders that were created for this output: the folder itself and its missing parents, outermost first.
     made: Vec<PathBuf>,
     batch: Batch,
     listing: Listing,
 }
 
-/// Maximum number of attempts to create a folder that other processes keep removing.
+/// Maximum number of attempts to create a folder, while other processes keep removing it.
 const MOST_TRIES: u32 = 100;
 
-/// The way in which the folder's manifest lists the written files.
+/// The relation of the written files to the manifest (the list of a run's files) in the folder.
 #[derive(Debug)]
 enum Listing {
-    /// The manifest does not list the files, because they do not belong to its run.
+    /// The manifest does not list the written files, because they do not belong to its run.
     None,
-    /// The files form one run, which replaces the previous run in the folder.
+    /// The written files are all files of one run. They replace the files of the previous run in the folder.
     Own(Manifest),
-    /// The files derive from the results in the folder. The folder's manifest, if present, lists them too.
+    /// The written files derive from the results in the folder. If the folder has a manifest, they are added to it.
     Added(Manifest),
 }
 
 impl OutputFolder {
-    /// Returns a folder for all files of one run. The files of the previous run are replaced as a whole.
+    /// Returns an output folder for all files of one run. They replace all files of the previous run.
     ///
     /// # Errors
     ///
-    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
-    /// whose rows may be the work of hours.
+    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep, whose
+    /// rows may be the work of hours.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
     }
 
-    /// Returns a folder for files that no manifest lists.
+    /// Returns an output folder for files that no manifest lists.
     ///
     /// # Errors
     ///
@@ -63,7 +63,7 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), Listing::None)
     }
 
-    /// Returns a folder for files that derive from the folder `results`. Both may be the same folder.
+    /// Returns an output folder for files that derive from the folder `results`. Both folders may be the same.
     ///
     /// # Errors
     ///
@@ -72,8 +72,8 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable before hours of simulation. The folders created for this check are removed
-    /// again, so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable, before hours of simulation. Folders created for this check are then removed,
+    /// so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
@@ -87,7 +87,7 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Executes `what` in the folder while no other process can remove or change it.
+    /// Executes `what` in the folder. Meanwhile no other process can remove or change the folder.
     fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
         // Another process may remove the folder between its creation and the write.
         let mut tries = 0;
@@ -119,23 +119,23 @@ impl OutputFolder {
         fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))
     }
 
-    /// Removes the created folders that are still empty.
+    /// Removes the folders that this output created and that are still empty.
     fn unmake(&mut self) {
         for folder in self.made.drain(..).rev() {
             let _ = fs::remove_dir(folder);
         }
     }
 
-    /// Locks the folder against other processes. Returns `None` on a file system without locks, where writing without
-    /// protection is better than no results.
+    /// Locks the folder against other processes. Returns `None` on a file system without locks: there, results without
+    /// protection are better than none.
     fn lock(&self) -> Option<File> {
         let folder = File::open(&self.path).ok()?;
         folder.lock().ok()?;
         Some(folder)
     }
 
-    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one, [`OutputFolder::commit`]
-    /// writes into the device.
+    /// Writes a file under a temporary name. If `name` is a device, a pipe or a link to one of these, nothing is
+    /// written until [`OutputFolder::commit`] writes into it.
     ///
     /// # Errors
     ///
@@ -152,11 +152,11 @@ impl OutputFolder {
         self.in_folder(|batch| batch.put(target, bytes))
     }
 
-    /// Renames all files to their final names, or none. Processes that commit to the same folder take turns.
+    /// Renames all files to their final names, or none of them. Processes that commit to the same folder take turns.
     ///
     /// # Errors
     ///
-    /// Fails when an existing file cannot be replaced. Every name then has its previous contents.
+    /// Fails when an existing file cannot be replaced. Every file then has its previous contents.
     pub(crate) fn commit(mut self) -> Result<(), CliError> {
         self.make()?;
         let _lock = self.lock();
@@ -166,8 +166,8 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Adds the manifest as the first file to be renamed. After a crash between two renames, the hashes in the
-    /// manifest show which files belong to the new run.
+    /// Adds the manifest, which will be renamed before all other files. After a crash between two renames, the hashes
+    /// in the manifest show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
         // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
@@ -194,7 +194,7 @@ impl OutputFolder {
     }
 }
 
-/// Returns the manifest of the run that will be replaced, or `None`.
+/// Returns the manifest of the run that will be replaced, or `None` if the folder has no manifest.
 ///
 /// # Errors
 ///
@@ -208,8 +208,8 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the listing of derived files. They are listed only when they are written into the folder that they derive
-/// from.
+/// Returns the listing of derived files. A manifest lists them only if they are written into the folder `results`, from
+/// which they derive.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {
@@ -218,7 +218,7 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// Removes the temporary files of an uncommitted folder, and the folders created for them that are still empty.
+/// Removes the temporary files of an uncommitted folder, and any still empty folders that were created for them.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.batch.discard();
@@ -226,18 +226,19 @@ impl Drop for OutputFolder {
     }
 }
 
-/// A single output file, written completely or not at all. A path that leads to a device or pipe is written through.
+/// A single output file, written completely or not at all. A device or pipe is never replaced: the bytes are written
+/// into it.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
-    /// Batch for a target that exists and is not a regular file.
+    /// Batch of one output for a target such as a device or pipe, which exists and is not a regular file.
     batch: Batch,
-    /// Folder of a regular file. `None` for a target that exists and is not a regular file.
+    /// Folder of the output, if it is a regular file. `None` for an existing target of another kind, such as a pipe.
     folder: Option<OutputFolder>,
 }
 
 impl OutputFile {
-    /// Resolves the path of an option, and checks that the path is writable where a check leaves no trace.
+    /// Resolves the path given by an option. Checks that the path is writable, if this check leaves no trace.
     ///
     /// # Errors
     ///
@@ -246,7 +247,7 @@ impl OutputFile {
         Self::begin(path, option, None)
     }
 
-    /// Resolves the path of a file that derives from the folder `results`. The file may be inside that folder.
+    /// Resolves the path of an output file that derives from the folder `results`. The file may be inside that folder.
     ///
     /// # Errors
     ///
@@ -273,7 +274,7 @@ impl OutputFile {
         Ok(Self { target, batch: Batch::new(place), folder })
     }
 
-    /// Returns true if the output goes to standard output. Commands then print nothing else.
+    /// Returns true if the output goes to standard output. The command must then print nothing else.
     pub(crate) fn is_standard_output(&self) -> bool {
         self.target == Target::StandardOutput
     }
@@ -297,12 +298,12 @@ impl OutputFile {
     }
 }
 
-/// Returns the folder of a file. A bare name is in the current folder.
+/// Returns the folder of a file. A name without a folder refers to the current folder.
 fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Returns a timeline as SVG. The run's origin is a comment behind the XML declaration, if there is one.
+/// Returns a timeline as SVG. An XML comment states the origin of the run: the settings that reproduce it.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
@@ -313,12 +314,12 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }
 
-/// Returns true for characters that XML forbids, or allows only as references.
+/// Returns true for a character that XML forbids, or allows only as a character reference.
 fn is_forbidden(c: char) -> bool {
     c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
 }
 
-/// Returns a picture as PNG. Text chunks hold the run's origin and whether the picture is complete.
+/// Returns a picture as PNG. Text chunks state the run's origin, and whether the picture is complete.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Resolution of output paths through links to files, devices and standard output.
+//! Resolves output paths through links to files, devices and standard output.
 
 use crate::error::CliError;
 use std::fmt::Display;
@@ -8,19 +8,19 @@ use std::path::{Path, PathBuf};
 /// The target of an output path after all links are resolved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A regular file, or a path without a file. Writing replaces the file by one rename.
+    /// A regular file, or a path at which no file exists yet. Writing replaces the file by one rename.
     File(PathBuf),
-    /// A device, a pipe or a socket. Data are written into the target.
+    /// A device, a pipe or a socket. Data are written into it, because it must not be replaced.
     Through(PathBuf),
-    /// Standard output of this process under a file name such as /dev/stdout.
+    /// Standard output of this process, named by a path such as /dev/stdout.
     StandardOutput,
 }
 
-/// Maximum number of links followed. A longer chain is treated as a circle.
+/// Maximum number of links that are followed. A longer chain is treated as a circle.
 const MOST_LINKS: usize = 40;
 
 impl Target {
-    /// Resolves a path.
+    /// Resolves a path to its target.
     ///
     /// # Errors
     ///
@@ -37,7 +37,8 @@ impl Target {
     }
 }
 
-/// Returns the file that a path leads to behind all links. The file need not exist. Writing there keeps the links.
+/// Returns the file to which a path leads after all links. The file need not exist. A write to this file keeps the
+/// links.
 fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -61,11 +62,11 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// Description of an output in error messages, in the words of its option.
+/// Description of an output for error messages, with the name of the option that gave it.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     option: &'static str,
-    /// The file that the option names, or `None` if the option names a folder.
+    /// The file that the option names. `None` if the option names a folder.
     file: Option<PathBuf>,
 }
 

@@ -1,10 +1,10 @@
-//! Conversion of groups of rows to the series of a chart.
+//! Converts groups of rows to the series of a chart.
 
 use super::PlotArgs;
 use super::question::{Group, text};
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 
-/// Returns the chart of some groups. Numbers on the x axis are sorted; names keep the order of the rows.
+/// Returns the chart of the given groups. Numbers on the x axis are sorted. Names keep the order of the rows.
 pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     let names = names_across(groups);
     let mut curves: Vec<&[String]> = Vec::new();
@@ -23,7 +23,7 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     Chart { axes, across, up: args.y_scale.scale(), series, size: ChartSize::Column { width_mm: args.width } }
 }
 
-/// Returns the distinct names on the x axis in the order of the rows, or `None` if all x values are numbers.
+/// Returns the distinct names on the x axis, in the order of the rows. Returns `None` if all x values are numbers.
 fn names_across(groups: &[Group]) -> Option<Vec<String>> {
     if groups.iter().all(|group| group.x.is_number() || group.x.is_null()) {
         return None;

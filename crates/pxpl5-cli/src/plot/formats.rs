@@ -6,7 +6,7 @@ mod print;
 use crate::error::CliError;
 use std::path::Path;
 
-/// File format of a figure.
+/// File format of a plotted figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,
@@ -45,7 +45,7 @@ impl Format {
     }
 }
 
-/// Returns the bytes of a figure in a format.
+/// Converts a figure from SVG to a file format, and returns the bytes of the file.
 ///
 /// # Errors
 ///

@@ -150,7 +150,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     print(&format!("{} drawn in {}; the numbers are beside it.\n", are(places as u64, "place"), args.out.display()))
 }
 
-/// Replaces old column names of comparisons by their current names, and prints a warning for each.
+/// Replaces old column names of comparisons by their current names, and prints a warning for each old name.
 fn with_new_names(mut question: Question, results: &ResultRows, quiet: bool) -> Question {
     if results.kind != RowsKind::Comparison {
         return question;
@@ -192,7 +192,7 @@ impl PlotArgs {
     }
 }
 
-/// Writes all three files, or none.
+/// Writes all three files of a plot, or none of them.
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
     // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -220,7 +220,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     folder.commit()
 }
 
-/// Returns the groups as CSV: names first, then numbers. A missing number is an empty cell.
+/// Returns the groups of rows as CSV: columns with names first, then numbers. A missing number is an empty cell.
 fn csv(question: &Question, groups: &[Group]) -> String {
     let columns = ["mean", "sd", "n", "low", "high", "missing"].map(str::to_owned);
     let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);

@@ -1,4 +1,4 @@
-//! The columns that a plot asks for, and the groups of rows that become its points.
+//! The columns to plot, and the groups of rows that become the points of the plot.
 
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
@@ -8,24 +8,24 @@ use pxpl5::compare::MeanInterval;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Column names of a plot, by role.
+/// Names of the columns to plot, by role.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
     /// Column on the x axis.
     pub(super) x: String,
     /// Column on the y axis.
     pub(super) y: String,
-    /// Columns whose combinations of values each give a curve.
+    /// Columns that separate the curves. Each combination of their values gives one curve.
     pub(super) by: Vec<String>,
     /// Columns over which the mean is taken.
     pub(super) band: Vec<String>,
-    /// Filters as pairs of a column and the text of its value.
+    /// Filters: pairs of a column name and the text of the required value.
     pub(super) only: Vec<(String, String)>,
     /// Confidence of intervals, between 0 and 1.
     pub(super) confidence: f64,
 }
 
-/// The rows of one point of one curve.
+/// The rows that are combined into one point of one curve.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     /// Values of the columns `Question::by`, as text.
@@ -33,18 +33,19 @@ pub(super) struct Group {
     pub(super) x: Value,
     /// Number of rows with a number in the y column.
     pub(super) n: usize,
-    /// Number of rows without a number: the run failed, or nothing was evaluated.
+    /// Number of rows without a number in the y column, because the run failed or nothing was evaluated.
     pub(super) missing: usize,
-    /// Mean of the numbers. NaN if `n` is 0.
+    /// Mean of the numbers in the y column. NaN if `n` is 0.
     pub(super) mean: f64,
-    /// Standard deviation. NaN if `n` is below 2, or if the rows lack a standard deviation.
+    /// Standard deviation of the numbers in the y column. NaN if `n` is below 2, or if the rows lack a standard
+    /// deviation.
     pub(super) sd: f64,
-    /// 95 % interval of the mean, with NaN in the same cases as `sd`.
+    /// Confidence interval of the mean. NaN in the same cases as `sd`.
     pub(super) interval: (f64, f64),
 }
 
 impl Question {
-    /// Returns the groups in the order in which they first occur in the rows.
+    /// Returns the groups of rows, in the order in which the groups first occur.
     ///
     /// # Errors
     ///
@@ -102,7 +103,7 @@ impl Question {
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval })
     }
 
-    /// Returns the group of a comparison's row, which is already a mean over seeds with an interval.
+    /// Returns the group for one row of a comparison. Such a row already is a mean over seeds with an interval.
     fn of_row(&self, by: Vec<String>, x: Value, row: &Row, missing: usize) -> Group {
         let number = |name: &str| value(row, name).and_then(Value::as_f64);
         let mean = number(&self.y).unwrap_or(f64::NAN);
@@ -112,7 +113,7 @@ impl Question {
         Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval }
     }
 
-    /// Fails if a swept setting varies within a group and is not one of the columns of the mean.
+    /// Returns an error if a swept setting varies within a group, unless the plot takes the mean over this setting.
     fn check_others(&self, results: &ResultRows, rows: &[&Row]) -> Result<(), CliError> {
         let axes = results.about.get("axes").and_then(Value::as_array).into_iter().flatten();
         let paths = axes.filter_map(|axis| axis["paths"].as_array()).flatten().filter_map(Value::as_str);

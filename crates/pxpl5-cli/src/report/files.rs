@@ -10,7 +10,7 @@ use std::path::Path;
 pub(super) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,
-    /// Suppresses warnings about files that are left out.
+    /// True if warnings about left-out files are not printed.
     quiet: bool,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Files<'a> {
         self.folder
     }
 
-    /// Reads the main results file, which describes all others. Without a manifest only this file is used, because
+    /// Reads the main results file, which describes all other files. Without a manifest only this file is used, because
     /// other files may belong to another run.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl<'a> Files<'a> {
         })
     }
 
-    /// Prints a warning that files are left out if the folder has no manifest.
+    /// Prints a warning if the folder has no manifest, because its other files are then left out.
     pub(super) fn warn_if_unlisted(&self) {
         if self.manifest.is_none() {
             self.warn(&format!(
@@ -62,8 +62,8 @@ impl<'a> Files<'a> {
         self.manifest.iter().flat_map(Manifest::names)
     }
 
-    /// Returns the contents of a listed file. Returns `None` if the file is not listed, and `None` with a warning if
-    /// the file has changed.
+    /// Returns the contents of a file in the manifest. Returns `None` if the manifest does not list the file. Returns
+    /// `None` and prints a warning if the file has changed.
     pub(super) fn read(&self, name: &str) -> Option<Vec<u8>> {
         match self.manifest.as_ref()?.read_file(self.folder, name) {
             Ok(bytes) => bytes,

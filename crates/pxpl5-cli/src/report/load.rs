@@ -7,7 +7,7 @@ use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::path::Path;
 
-/// Returns the experiments of a folder. All files except `report.json` are optional.
+/// Returns the experiments in a results folder. All files except `report.json` are optional.
 ///
 /// # Errors
 ///
@@ -53,7 +53,7 @@ fn run(files: &Files<'_>, name: &str, prefix: &str, report: &Value, published: &
     }
 }
 
-/// Returns the last picture of every surface.
+/// Returns the last picture of every surface. `prefix` is the beginning of the pictures' file names.
 fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
     let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
     let pictures = names.filter_map(|(name, surface)| {

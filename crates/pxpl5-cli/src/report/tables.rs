@@ -7,10 +7,10 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
 
-/// Maximum number of sweep rows on a page. Larger tables need a spreadsheet.
+/// Maximum number of rows of a sweep that a page shows. Larger tables need a spreadsheet.
 const MOST_ROWS: usize = 5_000;
 
-/// Returns the tables of a folder, or `None` if the folder holds neither a sweep nor a comparison.
+/// Returns the tables of a results folder, or `None` if the folder holds neither a sweep nor a comparison.
 ///
 /// # Errors
 ///
@@ -38,7 +38,8 @@ fn sweep(results: &ResultRows) -> PageTable {
     tabular(title, about, &flat)
 }
 
-/// Returns the table of a comparison, with one row for each pipeline. Columns of text follow the columns of numbers.
+/// Returns the table of a comparison, with one row for each pipeline. Columns of numbers come first, columns of text
+/// last.
 fn comparison(results: &ResultRows) -> PageTable {
     let flat: Vec<Vec<(String, String)>> = results.rows.iter().map(numbers_first).collect();
     let around =
@@ -57,7 +58,7 @@ fn numbers_first(row: &Row) -> Vec<(String, String)> {
     numbers.into_iter().chain(texts).collect()
 }
 
-/// Returns a table of rows, with columns in the order of their first occurrence.
+/// Returns a table of the given rows. The columns are in the order of their first occurrence.
 fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {
@@ -73,7 +74,7 @@ fn cell(row: &[(String, String)], column: &str) -> String {
     row.iter().find(|(key, _)| key == column).map_or_else(|| "-".to_owned(), |(_, text)| text.clone())
 }
 
-/// Formats a value for a cell: "-" for null, and floating-point numbers with at most four decimals.
+/// Formats a value as a cell: "-" for null, and floating-point numbers with at most four decimals.
 fn shown(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
@@ -91,7 +92,7 @@ fn pairs(settings: &Value) -> String {
     all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
-/// Adds the charts and pictures that the manifest lists, sorted by name.
+/// Adds charts and pictures to a table: those that the manifest lists, sorted by name.
 fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
     files.warn_if_unlisted();
     let mut names: Vec<&str> = files.names().collect();

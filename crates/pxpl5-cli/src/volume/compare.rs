@@ -1,4 +1,5 @@
-//! The command `pxpl5 volume compare`, which compares all clips and projections of a volume.
+//! The command `pxpl5 volume compare`. Compares all clips (ways to cut the scene into slices) and projections of a
+//! volume.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
@@ -75,7 +76,7 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-/// Name of a table column and the function that formats its cell of a row.
+/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&VariantRow) -> String);
 
 const COLUMNS: [Column; 16] = [
@@ -97,8 +98,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// Returns the mean ratio to the exact clip over some rings. Rings in which the exact clip shows nothing are left
-/// out.
+/// Returns the mean ratio of a row to the exact clip over some rings around the axis. Rings in which the exact clip
+/// shows nothing are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -133,7 +134,7 @@ fn text(comparison: &VolumeComparison) -> String {
     text
 }
 
-/// Two header lines of the table.
+/// The two header lines of the table.
 const HEADS: [[&str; COLUMNS.len()]; 2] = [
     [
         "clip",
@@ -181,7 +182,8 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Returns a chart of lit pixels per pixel of radius, for the clips projected along the normal.
+/// Returns a chart of brightness: lit pixels per pixel of radius. It shows the clips that are projected along the
+/// normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

@@ -40,7 +40,7 @@ pub(super) struct FiguresArgs {
     quiet: bool,
 }
 
-/// Scenes on which the rows are measured.
+/// Scenes on which the figures are measured.
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {

@@ -1,4 +1,5 @@
-//! The commands `pxpl5 volume view` and `pxpl5 volume film`, which render a volume as an eye sees it.
+//! The commands `pxpl5 volume view` and `pxpl5 volume film`. They show a volume as an eye in front of the display sees
+//! it.
 
 use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};
@@ -13,7 +14,7 @@ use pxpl5::volume::VolumeSettings;
 use pxpl5::volume::pictures::Look;
 use std::path::PathBuf;
 
-/// Options of the eye that sees a volume.
+/// Options of the eye that looks at a volume.
 #[derive(Args, Debug)]
 struct EyeArgs {
     /// Angle around the axis from +z to +x, degrees.
@@ -94,7 +95,7 @@ fn cut(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl EyeArgs {
-    /// Returns the eye's settings after checking that the eye can see the volume.
+    /// Checks that the eye can see the volume, and returns the settings of the eye.
     fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
         let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
         look.camera.distance = self.distance * settings.radius();

@@ -59,7 +59,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the work of the renderers and the part of the machine that limits the rate of volumes.
+/// Returns the work of the renderers, and the part of the machine that limits the number of volumes per second.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(

@@ -1,4 +1,5 @@
-//! Options that describe a volume. Each option is short for a path of `--set`.
+//! Options that describe a volume (a scene as slices of a volumetric display). Each option stands for a path of
+//! `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -17,7 +18,7 @@ use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
-/// The scene of a volume, and the settings that differ from the paper's.
+/// The scene of a volume, and the settings that differ from those of the paper.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. The scene is centred on the axis,
@@ -71,11 +72,11 @@ pub(super) struct SettingOptions {
     pub(super) quiet: bool,
 }
 
-/// Advice to reduce the cost of a volume.
+/// Advice on how to reduce the cost of a volume.
 pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
 
 impl SettingOptions {
-    /// Refuses to draw `volumes` volumes if their estimated time or memory exceeds the budget.
+    /// Returns an error if the estimated time or memory to draw `volumes` volumes exceeds the budget.
     ///
     /// # Errors
     ///
@@ -87,8 +88,8 @@ impl SettingOptions {
         self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)
     }
 
-    /// Returns the paper's settings with the options applied, `--set` last. Prints a warning for every number outside
-    /// its documented range.
+    /// Returns the paper's settings, changed by the options. `--set` is applied last. Prints a warning for every number
+    /// outside its documented range.
     ///
     /// # Errors
     ///
@@ -135,7 +136,7 @@ fn warnings(settings: &VolumeSettings) -> Vec<String> {
 }
 
 impl VolumeSettingArgs {
-    /// Returns the loaded and decimated scene.
+    /// Returns the scene, loaded and reduced to the requested number of primitives.
     ///
     /// # Errors
     ///
@@ -163,7 +164,7 @@ impl VolumeSettingArgs {
     }
 }
 
-/// Loads a scene by name or file, fitted into the display.
+/// Loads a scene by name or file, and scales it to fit into the display.
 pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
     let choice = SceneChoice {
         name: name.to_owned(),
@@ -176,12 +177,12 @@ pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
     Ok(choice.load()?)
 }
 
-/// Returns a picture as PNG with the data of its origin.
+/// Returns a picture as PNG, with the settings that reproduce it.
 pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliError> {
     png_bytes(picture, &origin(volume)).map_err(CliError::failure)
 }
 
-/// Returns the text chunks that state the origin of every picture of a volume.
+/// Returns the text chunks for every picture of a volume, which state the settings that reproduce the picture.
 pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
     let settings = &volume.settings;
     let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();

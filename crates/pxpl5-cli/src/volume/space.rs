@@ -22,7 +22,7 @@ const MEASURED: [&str; 6] = [
     "volumes_hz_overlapped",
 ];
 
-/// A sweep of volumes as described by its file.
+/// A sweep of volumes: shared settings, axes and measured quantities, as its file describes them.
 #[derive(Clone, Debug)]
 pub(super) struct VolumeSpace {
     pub(super) title: Option<String>,
@@ -36,7 +36,7 @@ pub(super) struct VolumeSpace {
 }
 
 impl VolumeSpace {
-    /// Reads a file. The settings `sets` of the command line override settings of the file.
+    /// Reads a file. `sets` are settings of the command line, which override settings of the file.
     pub(super) fn load(path: &Path, sets: &[String]) -> Result<Self, CliError> {
         let place = path.display().to_string();
         let bytes =
@@ -164,7 +164,7 @@ fn table(sweep: &mut Table, key: &str, place: &str) -> Result<Table, CliError> {
     }
 }
 
-/// Parses a list, or a range of whole numbers.
+/// Parses the values of an axis: a list, or a range of whole numbers.
 fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
     match value {
         Value::Array(list) if !list.is_empty() => Ok(Values::Listed(list.clone())),

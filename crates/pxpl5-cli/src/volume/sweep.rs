@@ -1,5 +1,5 @@
-//! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. Folder, rows and
-//! resumption are the same as in `pxpl5 sweep`.
+//! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. The output folder, the
+//! rows and `--resume` work as in `pxpl5 sweep`.
 
 use super::settings::{SMALLER, load};
 use super::space::VolumeSpace;
@@ -87,7 +87,11 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     if failed >= total { Err(CliError::failure("no point could be drawn")) } else { Ok(()) }
 }
 
-/// Returns the measured quantities with their definitions, and fails if the report lacks one of them.
+/// Returns the measured quantities with their definitions.
+///
+/// # Errors
+///
+/// Fails if a report lacks one of the quantities.
 fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError> {
     // A tiny volume without primitives yields a report with all names.
     let mut settings = VolumeSettings::paper();
@@ -115,7 +119,7 @@ fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError
     Ok(space.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
 }
 
-/// Returns the value at a path of names separated by dots.
+/// Returns the value in a JSON report at a path of names separated by dots.
 fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(report, |value, name| value.get(name))
 }
@@ -154,7 +158,7 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
     .map_err(CliError::failure)
 }
 
-/// Returns the paths of all model files that points name.
+/// Returns the paths of all model files that points of the sweep name.
 fn scene_files(space: &VolumeSpace) -> Vec<PathBuf> {
     let of_axes = space.axes.iter().flat_map(|axis| {
         let at = axis.paths.iter().position(|path| path == "scene");
@@ -185,7 +189,7 @@ impl Scenes {
     }
 }
 
-/// Draws a point and returns its row. An error becomes part of the row.
+/// Draws the volume at a point and returns its row. An error is stored in the row.
 fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, BudgetArgs)) -> SweepRow {
     let own = space.of_point(point);
     let parameters: BTreeMap<String, Value> =

@@ -1,5 +1,5 @@
-//! Measures the mean time of a message's software: all messages that a board receives and sends around the passes
-//! over a scene, without the time of bin entries.
+//! Measures the mean software time of a message. The measurement covers all messages that a board receives and sends
+//! around its passes over a scene. The time of bin entries is subtracted.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{BinHandoffWork, FrameView, Pass, RegionEnvelope, region_messages};
@@ -11,33 +11,32 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
 use std::sync::Arc;
 
-/// Words of an order or a report (rendering-control's protocol).
+/// Number of words of an order or a report message (rendering-control's protocol).
 const ORDER: u32 = 3;
-/// Words of a token (rendering-control's protocol).
+/// Number of words of a token message (rendering-control's protocol).
 const TOKEN: u32 = 6;
 
-/// Node of a board other than the measured one.
+/// Node number of a board other than the measured one.
 const OTHER: NodeId = NodeId(2);
 
-/// Total time and number of a board's messages. A received message and a sent chain each count as one.
+/// Total time and number of a board's messages. A received message counts as one, and so does a chain that was sent.
 #[derive(Default)]
 pub(super) struct Traffic {
     span: Span,
     messages: u64,
-    /// Number of entries and nanoseconds of each bin that the board sent.
+    /// Number of entries and sending time in nanoseconds for each bin that the board sent.
     handed: Vec<[f64; 2]>,
 }
 
-/// Returns the time of one bin entry that a slave sends, in nanoseconds: the slope over all bins, or 0 if no bin was
-/// sent.
+/// Returns the time to send one bin entry, for a slave that has the token, in nanoseconds. The result is the slope over
+/// all bins, or 0 if no bin was sent.
 pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
     let mut handed = scenes.iter().flat_map(|traffic| &traffic.handed).peekable();
     if handed.peek().is_none() { 0.0 } else { solve(handed.map(|[entries, ns]| ([*entries, 1.0], *ns))) }
 }
 
 impl Traffic {
-    /// Returns the mean time of a message in nanoseconds. The time of bin entries, `token_entry_ns` each, is
-    /// subtracted.
+    /// Returns the mean time of a message in nanoseconds. For each bin entry, `token_entry_ns` is subtracted.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
@@ -69,7 +68,7 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// Measures the messages of a board over a scene.
+/// Measures the messages of one board while it processes a scene.
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
@@ -89,8 +88,11 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
     Ok(traffic)
 }
 
-/// Executes the messages of a slave for one frame. The slave receives the host's view, and permission for EDIT and
-/// TRANSFORM, and reports both. For each eye the slave receives and passes on the token of every region.
+/// Executes the messages of a slave for one frame:
+///
+/// - The slave receives the frame's view from the host.
+/// - The slave receives permission for EDIT and for TRANSFORM, and reports the end of each.
+/// - For each eye, the slave receives the token of every region and passes it on.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     // The host's view, then the master's permission, then the slave's report.
@@ -112,8 +114,8 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     Ok(())
 }
 
-/// Executes the messages of one token in the middle of the chain of slaves, so that the region neither begins nor
-/// ends there.
+/// Executes the messages of one token. The slave is in the middle of the chain of slaves, so the region neither begins
+/// nor ends there.
 fn token(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -132,8 +134,9 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// Executes the messages of one Slats field on a board. The board receives the view, sends a chain for each clump to
-/// the regions of both eyes, and sends two chains of copy commands to all renderers.
+/// Executes the messages of one display field on a board under Slats. The board receives the view. It then sends a
+/// chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two chains of
+/// copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

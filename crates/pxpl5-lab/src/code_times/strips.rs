@@ -1,4 +1,5 @@
-//! Measures the times of just-in-time pixels and frameless rendering, apart from TRANSFORM, by executing their code.
+//! Measures the processor times of just-in-time pixels and frameless rendering by executing their code. The times of
+//! TRANSFORM are measured elsewhere.
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
@@ -11,44 +12,47 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene whose triangles are searched.
+/// Scene whose triangles are searched for those that meet a strip (a group of scan lines).
 const SCENE: &str = "mig";
-/// Number of boards that share the scene in the second measurement. The difference from the whole scene gives the
-/// time of one triangle.
+/// Number of boards that share the scene in the second measurement. The difference from the measurement of the whole
+/// scene gives the time of one triangle.
 const SMALLER: usize = 12;
 
-/// Time between two views in picoseconds: one NTSC field.
+/// Time between two head poses in picoseconds: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
-/// Address at which display lists begin in memory. Commands of messages lie above this address.
+/// Memory address at which display lists begin. The commands in messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of orders: a strip, a strip with its view, blocks, a field between two views. The
-/// second number of each pair counts the words before the views.
+/// Sizes in words of four kinds of order messages: a strip (group of scan lines), a strip with its view, blocks, and a
+/// field between two views. The second number of each pair counts the words before the views.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
-/// Times of strips and interpolation in nanoseconds.
+/// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
+/// views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
-    /// Time to compare one bounding box with a strip that the box does not meet.
+    /// Time to compare one triangle's bounding box with a strip (group of scan lines) that the box does not meet.
     pub box_ns: f64,
-    /// Additional time of an entry that meets a window of a strip. The time includes finding and sending the entry,
-    /// and nearby triangles that miss the strip.
+    /// Additional time of a bin entry for a triangle that meets one of a strip's five windows. The time includes
+    /// finding and sending the entry, and also covers nearby triangles that miss the strip.
     pub entry_ns: f64,
-    /// Time to create and send the five windows of a strip when all are empty.
+    /// Time to create and send the five windows of a strip (group of scan lines) when no triangle meets them.
     pub windows_ns: f64,
-    /// Time to compute the positions of a triangle in two views.
+    /// Time to compute the positions of a triangle in two successive views.
     pub ends_ns: f64,
-    /// Time of a triangle between two views that is not near a strip.
+    /// Time to skip one triangle that is not near a strip (group of scan lines), when triangles are interpolated
+    /// between two views.
     pub passed_ns: f64,
-    /// Additional time of a triangle that is near a strip, interpolated on the screen (first) and in the view
-    /// (second).
+    /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
+    /// interpolation on the screen, the second for interpolation in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Time of an order for a strip, a strip with a view, blocks, and a field between two views.
+    /// Times to assemble four kinds of order messages: for a strip (group of scan lines), for a strip with a view, for
+    /// blocks, and for a field between two views.
     pub order_ns: [f64; 4],
 }
 
-/// Measures the times of a code version.
+/// Measures the times of one version of the i860 code.
 ///
 /// # Errors
 ///
@@ -72,19 +76,19 @@ pub fn strip_times(version: CodeVersion) -> Result<StripTimes, ExperimentError> 
     })
 }
 
-/// Times of one share of a scene.
+/// Times in nanoseconds for one board's share of a scene.
 struct Measured {
     triangles: f64,
-    /// Mean time of a strip that no triangle meets.
+    /// Mean time to search the triangles for a strip (group of scan lines) that no triangle meets.
     search_ns: f64,
-    /// Additional time of each entry in strips that triangles meet.
+    /// Additional time of each bin entry, measured in strips that triangles meet.
     entry_ns: f64,
-    /// Time to compute the positions of all triangles in two views.
+    /// Time to compute the positions of all triangles in two successive views.
     ends_ns: f64,
-    /// Time of the commands between two views if no triangle is near a strip.
+    /// Time to compute the commands for an instant between two views, if no triangle is near the strip.
     passed_ns: f64,
-    /// Times of the commands between two views if all triangles are near a strip: interpolated on the screen, and in
-    /// the view.
+    /// Times to compute the commands for an instant between two views, if all triangles are near the strip. The first
+    /// number is for interpolation on the screen, the second for interpolation in eye space.
     interpolated_ns: [f64; 2],
 }
 
@@ -119,7 +123,7 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of entries and the time of every strip of one line.
+/// Returns the number of bin entries and the search time for every strip of one scan line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
@@ -148,7 +152,8 @@ fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
-/// Returns the time to compute the commands of triangles near some lines, half way between two views.
+/// Returns the time in nanoseconds to compute the commands of triangles half way between two views. `near` is the range
+/// of lines whose triangles are interpolated.
 fn between_ns(rig: &mut Rig, in_eye_space: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
     let interpolating = StripInterpolation {
@@ -169,7 +174,7 @@ fn views(rig: &Rig) -> [pphigs::FrameView; 2] {
     [0, 1].map(|number| (rig.views)(ViewNumber(number), Time(number * FIELD_PS)))
 }
 
-/// Returns the time to assemble each kind of order, after a first execution has loaded the code into the caches.
+/// Returns the time to assemble each kind of order message. A first execution loads the code into the caches.
 fn order_ns(version: CodeVersion) -> Result<[f64; 4], ExperimentError> {
     let mut rig = Rig::of_triangles(version, SCENE, SMALLER)?;
     let mut times = [0.0; 4];

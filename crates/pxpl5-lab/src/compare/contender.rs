@@ -1,9 +1,9 @@
-//! The rows of a comparison: pipelines with settings, and the method of display.
+//! The rows of a comparison: pipelines with settings, and the way in which each pipeline shows its pictures.
 
 use pxpl5_measure::Showing;
 use pxpl5_run::Registry;
 
-/// One row of a comparison: a pipeline and the settings that differ from the shared ones.
+/// One row of a comparison: a pipeline, with the settings that differ from the shared ones.
 #[derive(Clone, Debug)]
 pub(super) struct ComparedPipeline {
     pub(super) name: String,
@@ -12,15 +12,16 @@ pub(super) struct ComparedPipeline {
     pub(super) showing: Showing,
 }
 
-/// Settings that send each clump of Slats only to the regions that the clump touches. As published, every clump goes
-/// to all regions. This limits the scene to little more than 100 triangles, too few for an evaluation of the raster
-/// offset.
+/// Settings with which Slats sends each clump (group of triangles) only to the regions that the clump touches. As
+/// published, every clump goes to all regions. This limits the scene to little more than 100 triangles, too few to
+/// evaluate the raster offset.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
-/// Settings of [`TOUCHED`] with a raster that is shifted before the eyes.
+/// Settings of [`TOUCHED`] with a raster that is shifted by the error of the predicted pose.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
-/// Settings of [`TOUCHED`] without prediction: the video of the real world is delayed until the pictures of its instant are there.
+/// Settings of [`TOUCHED`] without prediction. Instead, the video of the real world is delayed until the picture for
+/// the same instant is ready.
 const DELAYED: &[(&str, &str)] = &[("binning", "touched"), ("head.predict", "none")];
 
 impl ComparedPipeline {
@@ -38,17 +39,18 @@ impl ComparedPipeline {
     }
 }
 
-/// Row whose error is against the delayed video of the world, and so is no rival of the other rows.
+/// Name of the row whose error is measured against delayed video of the world. This error cannot be ranked with the
+/// errors of the other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
-/// Pipelines that stand for their family where not all rows are run.
+/// Pipelines that represent their families in a comparison of only a few rows.
 const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 
-/// Returns the names of the rows that a comparison of a few rows has: one or two for each family of pipelines.
+/// Returns the names of the rows in a short comparison: one or two for each family of pipelines.
 ///
-/// A family without a usual pipeline, such as one of another crate, has its first pipeline. Rows that are variants of a pipeline are
-/// always among them.
+/// A family that has none of the usual pipelines, such as one of another crate, is represented by its first pipeline.
+/// Rows that are variants of a pipeline are always included.
 #[must_use]
 pub fn usual_rows(registry: &Registry) -> Vec<String> {
     let entries = registry.pipelines();
@@ -61,8 +63,8 @@ pub fn usual_rows(registry: &Registry) -> Vec<String> {
     compared_pipelines(registry).into_iter().map(|contender| contender.name).filter(|name| is_usual(name)).collect()
 }
 
-/// Returns a row for every compared pipeline of the registry, in its order. The variants of Slats (touched regions,
-/// raster offset, delayed video, reference) follow Slats.
+/// Returns a row for every compared pipeline of the registry, in the order of the registry. The variants of Slats
+/// (touched regions, raster offset, delayed video, reference) follow Slats.
 pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {

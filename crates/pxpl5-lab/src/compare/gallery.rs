@@ -1,4 +1,4 @@
-//! The picture that a row of a comparison shows at the end of its first run.
+//! The last picture that a row of a comparison shows in its first run.
 
 use image::RgbImage;
 use pxpl5_measure::Measured;
@@ -6,23 +6,23 @@ use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 
-/// The last picture before the first eye, and the ideal picture of the same instant.
+/// The last picture for the first eye, and the ideal picture of the same instant.
 #[derive(Clone, Debug)]
 pub struct LastPicture {
-    /// Picture that the eye sees, complete or not.
+    /// Picture that the eye sees, which may be incomplete.
     pub seen: RgbImage,
-    /// Ideal picture of the scene in the middle of the last period, for the true pose of the head and in the shading
-    /// of the pipeline. `None` if the display has no such instant.
+    /// Ideal picture of the scene in the middle of the last display period, for the true pose of the head and with the
+    /// pipeline's shading. `None` if the display has no such instant.
     pub should_be: Option<RgbImage>,
-    /// True if the seen picture was complete in time.
+    /// True if the picture that the eye sees was complete in time.
     pub is_complete: bool,
 }
 
-/// Surface whose picture is kept.
+/// Display surface (first eye) whose picture is kept.
 const FIRST: SurfaceId = SurfaceId(0);
 
 impl LastPicture {
-    /// Returns the last picture of a run with pixels, or `None` if no picture was shown.
+    /// Returns the last picture of a run that computed pixels, or `None` if no picture was shown.
     pub(super) fn of(outcome: &Outcome, is_complete: bool) -> Option<Self> {
         let seen = outcome.picture(FIRST)?;
         let should_be = middle_of_last(outcome).and_then(|middle| outcome.ideal_picture(FIRST, middle));
@@ -30,7 +30,7 @@ impl LastPicture {
     }
 }
 
-/// Returns the time at which the beam is in the middle of the last period.
+/// Returns the time at which the display's beam is in the middle of the last period.
 fn middle_of_last(outcome: &Outcome) -> Option<Time> {
     let display = outcome.record().display();
     let surface = display.surfaces().first()?;

@@ -2,7 +2,7 @@
 //! evaluation.
 //!
 //! [`CompareQuery`] describes a comparison. [`Comparison`] is its result. Each [`ComparisonRow`] has the latency from
-//! head to light, the prediction interval, the error in pixels by cause, and the number of triangles that the
+//! head to display, the prediction interval, the error in pixels by cause, and the number of triangles that the
 //! pipeline could draw.
 
 mod contender;

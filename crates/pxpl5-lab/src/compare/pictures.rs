@@ -1,5 +1,5 @@
-//! Pictures of a vertical edge under a pan: conventional and just-in-time pixels, as computed and as seen on the
-//! raster.
+//! Pictures of a vertical edge while the head turns (pans). They compare conventional and just-in-time pixels, as
+//! computed and as seen on the display.
 
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -15,27 +15,27 @@ use tracking::time::span_s;
 use tracking::tracker::TrackerConfig;
 use tracking::view::HmdView;
 
-/// The four pictures of one field: 640 x 240, with one row for each scanned line.
+/// The four pictures of one display field. Each has 640 x 240 pixels, with one row for each scanned line.
 #[derive(Clone, Debug)]
 pub struct EdgePictures {
-    /// Picture drawn for one instant: the edge is vertical.
+    /// Picture drawn for one instant. The edge is vertical.
     pub conventional: RgbImage,
-    /// The conventional picture as seen by an eye that turns while the beam runs: the edge slants.
+    /// The conventional picture as an eye sees it that turns while the beam runs. The edge is slanted.
     pub conventional_seen: RgbImage,
-    /// Picture drawn for the instant of each line: the edge slants.
+    /// Picture in which each line is drawn for the instant of its display. The edge is slanted.
     pub just_in_time: RgbImage,
-    /// The just-in-time picture as seen by the turning eye: the edge is vertical.
+    /// The just-in-time picture as an eye sees it that turns while the beam runs. The edge is vertical.
     pub just_in_time_seen: RgbImage,
 }
 
-/// Field that is drawn. By then the pipelines are full and the predictor has received many reports.
+/// Number of the field that is drawn. By then the pipelines are full and the predictor has received many reports.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Distance of the edge in metres.
+/// Distance from the eye to the edge in metres.
 const DISTANCE_M: f32 = 2.0;
 
-/// Returns a scene with a white wall on the left of a vertical edge, and nothing on its right. The edge is straight
-/// ahead (along -z). The viewer starts `yaw_deg` to the left of the edge.
+/// Returns a scene with a white wall on the left of a vertical edge, and nothing on the right of the edge. The edge
+/// lies straight ahead (along -z). The viewer first looks `yaw_deg` to the left of the edge.
 #[must_use]
 pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertex =
@@ -68,8 +68,8 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
     .expect("a quadrangle is a scene")
 }
 
-/// Draws the edge on a machine under a pan. The tracker is perfect and the head's velocity constant, so the pictures
-/// differ only in the instant for which each line is drawn.
+/// Draws the edge on a machine while the head turns. The tracker is perfect and the head's velocity is constant. The
+/// pictures therefore differ only in the instant for which each line is drawn.
 ///
 /// # Errors
 ///
@@ -80,7 +80,7 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
     Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
 }
 
-/// Returns a field as scanned and as seen.
+/// Returns two pictures of a field: as the display scans it, and as a turning eye sees it.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
     let video = Video::new(FrameBufferConfig::NTSC.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
     // Start the pan so that the edge is in the middle of the screen in the middle of the field.
@@ -103,8 +103,8 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
     Ok((picture, seen))
 }
 
-/// Returns a scanned field as seen by an eye that turns with the head. The field has one row for each of its lines.
-/// Each pixel moves to its position relative to the head at the instant when the middle of the field lights. Pixels
+/// Returns a scanned field as an eye that turns with the head sees it. The field has one row for each of its lines.
+/// Each pixel moves to its position relative to the head at the instant when the middle of the field is lit. Pixels
 /// without content are black.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {

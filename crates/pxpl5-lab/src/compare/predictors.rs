@@ -8,18 +8,18 @@ use serde::Serialize;
 use std::sync::Arc;
 use tracking::predict::{PredictorConfig, PredictorKind, Training};
 
-/// Result of one predictor on an experiment.
+/// Result of an experiment with one predictor.
 #[derive(Clone, Debug, Serialize)]
 pub struct PredictorError {
     /// Predictor between tracker and pipeline.
     pub kind: PredictorKind,
-    /// Parameters of the predictor in the run. `None` if the run failed.
+    /// Parameters of the predictor during the run. `None` if the run failed.
     pub numbers: Option<PredictorConfig>,
-    /// Data on which the parameters were tuned. `None` if they were given or the predictor is not tuned.
+    /// Data on which the parameters were tuned. `None` if the parameters were given, or if the predictor is not tuned.
     pub training: Option<Training>,
-    /// Errors in pixels. `None` if no pixel was evaluated.
+    /// Errors of position on the screen in pixels. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
-    /// Reason for a missing error, or `None`.
+    /// Reason why the predictor has no result in `error`. `None` if it has one.
     pub failure: Option<String>,
 }
 
@@ -28,10 +28,10 @@ pub struct PredictorError {
 pub struct Predictors {
     /// Predictor that the experiment selects.
     pub chosen: PredictorKind,
-    /// Predictor with the smallest mean error, and the simplest of several equal ones. `None` if no error was
+    /// Predictor with the smallest mean error. If several are equal, the simplest of them. `None` if no error was
     /// evaluated.
     pub best: Option<PredictorKind>,
-    /// Result of each predictor, the simplest first.
+    /// Results of all predictors, from the simplest on.
     pub each: Vec<PredictorError>,
 }
 
@@ -43,9 +43,9 @@ impl Predictors {
     }
 }
 
-/// Runs an experiment with each predictor, and leaves all other settings unchanged. The predictors are tuned for the
-/// pipeline's interval and the motion if the experiment's own predictor is tuned. Returns `None` for an experiment
-/// without a head. No pixels are computed.
+/// Runs an experiment once with each predictor. All other settings stay the same. If the experiment's own predictor is
+/// tuned, all are tuned for the pipeline's prediction interval and the motion. Returns `None` for an experiment without
+/// a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
@@ -58,7 +58,7 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
 }
 
 /// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the known error of the chosen
-/// predictor, which does not run again. The mean is NaN if no error was evaluated.
+/// predictor, so that its run is not repeated. The mean is NaN if no error was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {

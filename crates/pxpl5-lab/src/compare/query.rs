@@ -1,4 +1,4 @@
-//! The query of a comparison and its execution.
+//! Definition and execution of a comparison of pipelines.
 
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::predictors::predictor_means;
@@ -17,42 +17,43 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
-/// Maximum number of fields of a compared run: a little over an hour. A comparison keeps all observations of a run,
-/// because its errors are evaluated in several ways.
+/// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
+/// all observations of a run in memory to evaluate its errors in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
-/// Number of periods by which the first evaluated periods of rows may differ: intervals between due pictures.
+/// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
+/// late. Due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
 pub const LEAST_SEEDS: usize = 5;
 
-/// A comparison to run: settings shared by all rows. Each row adds its pipeline and a few settings of its own.
+/// A comparison to run, with the settings shared by all rows. Each row adds its pipeline and a few settings of its own.
 #[derive(Clone, Debug)]
 pub struct CompareQuery {
-    /// Machine, scene, head and fields, without a pipeline. The registry of this file has the compared pipelines. A
-    /// `head.motion` of `synthetic` is a different motion for every seed.
+    /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
+    /// this file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
     /// Names of the rows to run. An empty list runs all rows.
     pub only: Vec<String>,
-    /// Seeds of tracker, host and motion. Every row has one run for each seed.
+    /// Seeds of the random numbers of tracker, host and motion. Every row has one run for each seed.
     pub seeds: Vec<u64>,
-    /// True to search for the largest number of triangles that each row can draw.
+    /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
-    /// True to compute the pixels of the first seed's runs, for [`ComparisonRow::picture`].
+    /// True if the runs of the first seed compute pixels, for [`ComparisonRow::picture`].
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
     pub confidence: f64,
 }
 
-/// Error of a comparison that cannot be run.
+/// Error that prevents a comparison.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// An invalid setting.
+    /// A setting is invalid.
     #[error(transparent)]
     Settings(#[from] FileError),
-    /// Too few or too many fields.
+    /// The number of fields is too small or too large.
     #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
     Fields {
         /// Minimum and maximum number of fields.
@@ -60,23 +61,23 @@ pub enum CompareError {
         /// Number of fields in the settings.
         found: u64,
     },
-    /// A query without seeds.
+    /// The query has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// A registry in which no pipeline is marked as compared.
+    /// The registry marks no pipeline as compared.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
-    /// A requested row that does not exist.
+    /// A row in the query does not exist.
     #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
     Row {
         /// Names of all rows, separated by commas.
         expected: String,
         /// Name in the query.
         found: String,
-        /// Name of the row that is most similar to the requested name.
+        /// Name of the existing row that is most similar to the name in the query.
         nearest: String,
     },
-    /// Settings without a head, and so without an error to compare.
+    /// The settings have no head motion, so there is no error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
 }
@@ -102,19 +103,19 @@ pub struct Comparison {
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
-    /// First period of the display in which rows are evaluated, to within one interval between due pictures. Rows that start up later
-    /// begin later ([`ComparisonRow::window`]).
+    /// First display period in which rows are evaluated, exact to within one interval between due pictures. Rows that
+    /// start up later are evaluated from a later period on ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
-    /// Rows in the order of the registry.
+    /// Results of the compared pipelines, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
 
 impl CompareQuery {
-    /// Runs every row with every seed. `finished` is called with the number of finished runs and the number of all
-    /// runs.
+    /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
+    /// number of all runs.
     ///
-    /// Every pipeline has a row. If a pipeline cannot run on the machine or shows no picture of the scene, its row
-    /// has the reason and the number of triangles that it could draw.
+    /// The result has a row for every pipeline. If a pipeline cannot run on the machine or shows no picture of the
+    /// scene, its row holds the reason and the number of triangles that the pipeline could draw.
     ///
     /// # Errors
     ///
@@ -123,7 +124,8 @@ impl CompareQuery {
         self.run_with(finished, |_| {})
     }
 
-    /// Runs every row with every seed, as [`CompareQuery::run`] does. `ended` is called with each row as soon as its runs have ended.
+    /// Runs every row with every seed, as [`CompareQuery::run`] does. `ended` is called with each row as soon as all
+    /// runs of this row have ended.
     ///
     /// # Errors
     ///
@@ -170,8 +172,8 @@ impl CompareQuery {
         })
     }
 
-    /// Returns the plan of each row with the first seed, for an estimate of the cost. Rows that cannot run are left
-    /// out.
+    /// Returns the plan of each row with the first seed, from which the cost can be estimated. Rows that cannot run are
+    /// left out.
     ///
     /// # Errors
     ///
@@ -182,7 +184,7 @@ impl CompareQuery {
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
-    /// Returns the rows to run, in the order of the registry.
+    /// Returns the pipelines to compare, in the order of the registry.
     fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, CompareError> {
         let mut chosen = compared_pipelines(self.shared.registry());
         let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
@@ -255,7 +257,7 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the error message of a row that showed no picture in the window of evaluation.
+/// Returns the error message of a row that showed no picture in the evaluated part of the run.
 fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible
@@ -268,7 +270,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns the criterion of the largest number of triangles, in words.
+/// Returns the criterion of the triangle limit in words.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -281,8 +283,12 @@ fn definition(plan: &Plan) -> String {
 impl Comparison {
     /// Returns the row with the least mean error.
     ///
-    /// A row with pictures that were due and not shown is never the best. Neither is the reference, nor a row that was evaluated over other
-    /// periods, nor the row of delayed video, whose error leaves out the delay of the world.
+    /// Four kinds of rows are never the best:
+    ///
+    /// - rows with pictures that were due and not shown
+    /// - the reference
+    /// - rows that were evaluated over other display periods
+    /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
         let judged =
@@ -292,13 +298,13 @@ impl Comparison {
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 
-    /// Returns true if a row was evaluated from a later period on than the others.
+    /// Returns true if the evaluation of a row begins in a later display period than that of the others.
     #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
     }
 
-    /// Returns the row with a name.
+    /// Returns the row of the pipeline with this name.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)

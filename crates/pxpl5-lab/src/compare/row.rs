@@ -1,4 +1,4 @@
-//! A row of a comparison, which combines the runs of all seeds.
+//! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
@@ -14,23 +14,23 @@ use tracking::predict::PredictorKind;
 pub struct MeanInterval {
     /// Mean of the seeds' means. NaN if there are no seeds.
     pub mean: f64,
-    /// Lower end of the interval. NaN for fewer than two seeds.
+    /// Lower end of the confidence interval. NaN for fewer than two seeds.
     pub low: f64,
-    /// Upper end of the interval. NaN for fewer than two seeds.
+    /// Upper end of the confidence interval. NaN for fewer than two seeds.
     pub high: f64,
     /// Number of seeds.
     pub n: usize,
 }
 
-/// Default confidence of an interval.
+/// Default confidence of an interval, as a probability.
 pub const CONFIDENCE: f64 = 0.95;
 
 impl MeanInterval {
-    /// Computes mean and interval of one positive number for each seed, at a confidence between 0 and 1.
+    /// Computes the mean and its interval from one positive number for each seed, at a confidence between 0 and 1.
     ///
-    /// The interval of a positive quantity is that of its logarithm (delta method): from `mean / f` to `mean * f` with
-    /// `f = exp(t sd / (sqrt(n) mean))`. So the lower end stays positive. Numbers that are not all positive have the symmetric interval
-    /// of [`MeanInterval::of_signed`].
+    /// The interval is computed for the logarithm (delta method), so that its lower end stays positive. It reaches from
+    /// `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is not positive, the result is the
+    /// symmetric interval of [`MeanInterval::of_signed`].
     #[must_use]
     pub fn of(values: &[f64], confidence: f64) -> Self {
         let symmetric = Self::of_signed(values, confidence);
@@ -41,7 +41,7 @@ impl MeanInterval {
         Self { low: symmetric.mean / factor, high: symmetric.mean * factor, ..symmetric }
     }
 
-    /// Computes mean and symmetric interval of one number for each seed, which may be negative.
+    /// Computes the mean and its symmetric interval from one number for each seed. The numbers can be negative.
     #[must_use]
     pub fn of_signed(values: &[f64], confidence: f64) -> Self {
         let statistics = Statistics::of(values.iter().copied());
@@ -51,106 +51,112 @@ impl MeanInterval {
     }
 }
 
-/// Returns the quantile of Student's t distribution that a two-sided interval of some confidence needs.
+/// Returns the quantile of Student's t distribution for a two-sided interval of the given confidence.
 fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
     StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
 }
 
-/// Errors in pixels over the runs of all seeds.
+/// Errors of position on the screen, over the runs of all seeds.
 #[derive(Clone, Debug, Serialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
     /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
-    /// Percentiles over all evaluated pixels of all seeds, in pixels.
+    /// Percentiles of the error over all evaluated pixels of all seeds, in pixels.
     pub pixels: Percentiles,
     /// Number of evaluated pixels of all seeds.
     pub n: u64,
-    /// Percentiles 0 to 100 of the evaluated errors, in pixels: 101 numbers in ascending order. Empty if no pixel was
-    /// evaluated.
+    /// Percentiles 0 to 100 of the error over all evaluated pixels, in pixels: 101 numbers in ascending order. Empty if
+    /// no pixel was evaluated.
     pub distribution_px: Vec<f64>,
 }
 
-/// Contribution of one cause to the mean error.
+/// Contribution of one cause to the mean error on the screen.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CauseShare {
-    /// The cause. `None` for the remainder, which is the interaction of all causes.
+    /// The cause of the error. `None` for the remainder, which is the interaction of all causes.
     pub cause: Option<Cause>,
-    /// Contribution in pixels, as a mean over seeds. Negative if the error is larger without the cause.
+    /// Contribution to the mean error in pixels, as a mean over seeds. Negative if the error is larger without the
+    /// cause.
     pub px: MeanInterval,
 }
 
-/// Mean error of a row with one predictor.
+/// Mean error of a comparison row when another predictor replaces its own.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PredictorMean {
-    /// Predictor that replaced the chosen one.
+    /// Predictor that replaced the row's own predictor.
     pub kind: PredictorKind,
     /// Mean error in pixels. NaN if no pixel was evaluated.
     pub mean_px: f64,
 }
 
-/// Results of one low-latency method.
+/// Results of one low-latency method in a comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct ComparisonRow {
-    /// Name of the row: the pipeline or one of its variants.
+    /// Name of the row: the name of a pipeline or of one of its variants.
     pub pipeline: String,
-    /// Settings that distinguish the row from others of the same pipeline.
+    /// Settings that distinguish this row from other rows of the same pipeline.
     pub settings: String,
-    /// Number of frame buffers that the pipeline draws into.
+    /// Number of eyes, each with its own frame buffer, that the pipeline draws for.
     pub eyes: usize,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
     /// Latency of the machine alone in milliseconds, over the complete pictures of all seeds.
     pub latency_ms: Statistics,
-    /// Latency from the head's pose to the light of the picture's middle in milliseconds, over the complete pictures
-    /// of all seeds. For pipelines that draw cube faces, only the position of the head counts.
+    /// Latency from the measured pose of the head until the display lights the picture's middle, in milliseconds. All
+    /// complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head counts.
     pub head_to_light_ms: Statistics,
-    /// Latency from the head's orientation to the light of the picture's middle in milliseconds. Cube faces are
-    /// turned at scan-out with the newest orientation. Other pictures show the orientation and the position of the
-    /// same pose.
+    /// Latency from the measured orientation of the head until the display lights the picture's middle, in
+    /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
+    /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Stages of the latency from head to light in milliseconds, over the complete pictures of all seeds.
+    /// Stages of the latency from head to display in milliseconds, over the complete pictures of all seeds.
     pub end_to_end: Budget,
-    /// Time from the newest measurement to the instant for which a picture is drawn, in milliseconds.
+    /// Prediction interval in milliseconds: from the newest measurement of the head to the instant for which a picture
+    /// is drawn.
     pub prediction_interval_ms: Statistics,
-    /// New complete pictures a second, over the seeds with at least two pictures. NaN if no seed has two.
+    /// Number of new complete pictures per second, averaged over the seeds with at least two pictures. NaN if no seed
+    /// has two.
     pub updates_hz: MeanInterval,
-    /// Number of pictures due in all seeds. `None` for a pipeline whose pictures are never due.
+    /// Number of pictures in all seeds that had to be shown in a certain period. `None` if the pipeline has no such
+    /// deadlines.
     pub due: Option<u64>,
-    /// Number of due pictures that were late, incomplete or missed. `None` for a pipeline whose pictures are never
-    /// due.
+    /// Number of due pictures that were late, incomplete or missed. `None` if the pipeline's pictures have no
+    /// deadlines.
     pub not_shown: Option<u64>,
-    /// Number of regions that arrived after their deadline, in all seeds. `None` if regions have no deadline.
+    /// Number of regions in all seeds that arrived after their deadline. `None` if regions have no deadline.
     pub late_regions: Option<usize>,
-    /// Registration error over a grid of pixels and all fields.
+    /// Error of position on the screen, over a grid of pixels and all evaluated fields.
     pub error: ErrorSpread,
-    /// Periods of the display over which the first seed was evaluated. `None` for no seed, or a run that was over before.
+    /// Display periods over which the first seed was evaluated. `None` if there is no seed, or if the run ended before
+    /// the evaluation began.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error. Their sum is the mean error.
+    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty for the reference, which no firmware draws.
+    /// Mean error of the first seed with each predictor. Empty for the reference, which is computed without firmware.
     pub predictors: Vec<PredictorMean>,
-    /// Largest number of triangles by the pipeline's own criterion. `None` if the query did not ask for a search, or
-    /// the search failed.
+    /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
+    /// search, or the search failed.
     pub triangles_possible: Option<u32>,
     /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,
-    /// Reason for missing results with the number of triangles that could be drawn, or `None`.
+    /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if all results are
+    /// present.
     pub failure: Option<String>,
-    /// Time that the runs took on this host, in seconds.
+    /// Time in seconds that the runs took on the host.
     pub host_seconds: f64,
-    /// Errors of the first seed by field.
+    /// Errors on the screen of the first seed, for each field.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
-    /// Last picture of the first seed before the first eye. `None` if the query did not ask for pictures, or no
-    /// picture was shown.
+    /// Last picture of the first seed for the first eye. `None` if the query did not ask for pictures, or no picture
+    /// was shown.
     #[serde(skip)]
     pub picture: Option<LastPicture>,
 }
 
 impl ComparisonRow {
-    /// Combines the runs of a row. A row without runs has no numbers.
+    /// Combines the runs of all seeds into a row. Without runs, the row has no numbers.
     pub(super) fn of(
         contender: &ComparedPipeline,
         pipeline: &dyn Pipeline,
@@ -212,7 +218,7 @@ impl ComparisonRow {
     }
 }
 
-/// Returns the sum of the known values, or `None` if no value is known.
+/// Returns the sum of the known values, or `None` if all values are unknown.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())
@@ -227,7 +233,7 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
     Statistics::of(trials.iter().flat_map(|trial| values(trial)).copied())
 }
 
-/// Returns the contributions of all causes. The interaction of the causes comes last.
+/// Returns the contributions of all causes to the mean error. The interaction of the causes comes last.
 fn causes(trials: &[&Trial], confidence: f64) -> Vec<CauseShare> {
     let split: Vec<_> = trials.iter().filter_map(|trial| trial.causes.as_ref()).collect();
     if split.is_empty() {
@@ -267,8 +273,8 @@ impl ErrorSpread {
     }
 }
 
-/// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. A percentile is the smallest number
-/// that the given share of numbers does not exceed.
+/// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. Percentile p is the smallest number
+/// that is at least as large as p % of all numbers.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
     // Position of the smallest number that the given percentage does not exceed.

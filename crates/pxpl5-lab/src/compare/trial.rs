@@ -1,4 +1,4 @@
-//! One run of one row of a comparison.
+//! One run of one row in a comparison.
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
@@ -10,7 +10,7 @@ use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Results of one run of a row. The row pools the runs of all seeds.
+/// Results of one run in a comparison. A row combines the runs of all seeds.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
     pub(super) latency_ms: Vec<f64>,
@@ -23,18 +23,18 @@ pub(super) struct Trial {
     pub(super) updates_hz: Option<f64>,
     pub(super) due: Option<DuePictures>,
     pub(super) window: Option<ResultWindow>,
-    /// Number of complete pictures in the window of evaluation.
+    /// Number of complete pictures in the evaluated part of the run.
     pub(super) shown: usize,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
-    /// Result of the dry run before the run.
+    /// Result of the dry run that preceded the run.
     pub(super) rehearsed: Option<Arc<DryRun>>,
-    /// Last picture of a run with pixels, if a picture was shown.
+    /// Last picture of the run, if the run computed pixels and showed a picture.
     pub(super) picture: Option<LastPicture>,
 }
 
 impl ComparedPipeline {
-    /// Returns the shared settings with this row's pipeline and settings and a seed.
+    /// Returns the plan of one run: the shared settings, the settings of this row, and a seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -44,7 +44,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs the row once. An error is returned as its message.
+    /// Runs one plan of the row. An error is returned as its message.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
@@ -53,9 +53,9 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first period in which the rows of a comparison are evaluated: after a quarter of the run.
+/// Returns the first display period in which the rows of a comparison are evaluated: after a quarter of the run.
 ///
-/// So all rows are evaluated over the same periods, although some start up later than others.
+/// All rows are thus evaluated over the same periods, although some start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
@@ -91,8 +91,8 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// Returns the times from the measurement of an orientation to light, in milliseconds. Cube faces are turned at
-/// scan-out; other pictures are drawn for the orientation of their pose.
+/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
+/// get their orientation at scan-out. Other pictures are drawn for the orientation of their pose.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if outcome.pipeline().draws_faces().is_none() {
         return Budget::totals_ms(outcome);
@@ -100,8 +100,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the times from the newest measurement behind a view to the instant for which its picture is drawn, in
-/// milliseconds.
+/// Returns the prediction intervals in milliseconds. Each reaches from the newest measurement behind a view to the
+/// instant for which the view's picture is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

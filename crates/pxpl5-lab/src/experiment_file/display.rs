@@ -1,4 +1,4 @@
-//! The display: one by name, or numbers on top of a preset.
+//! The display in an experiment file: a preset by name, and parameters that change the preset.
 
 use super::read::{plain, wrong};
 use super::{ExperimentFile, FileError, Setting};
@@ -6,19 +6,19 @@ use parameters::{ParameterTable, Value as Number, nearest};
 use pxpl5_display::DisplayConfig;
 use pxpl5_run::DisplayEntry;
 
-/// The beginning of the keys of numbers.
+/// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";
 
-/// The preset of the numbers if none is named.
+/// Name of the preset that display parameters change if the file names no preset.
 const OWN: &str = "panel";
 
-/// A number of a display in an experiment file, with its name there and in the table of the display.
+/// A display parameter in an experiment file. It has one name in the file and one in the display's table of parameters.
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that stand for numbers.
+    /// Words that the file may contain instead of a number, each with its number.
     words: &'static [(&'static str, u64)],
 }
 
@@ -62,12 +62,13 @@ const KEYS: [NumberKey; 12] = [
     whole("bits", "bits of a pixel's colour, 3 to 24"),
 ];
 
-/// Returns every key of a number with its description.
+/// Returns the key of every display parameter with its description.
 pub(super) fn keys() -> impl Iterator<Item = (String, &'static str)> {
     KEYS.iter().map(|key| (format!("{NUMBERS}{}", key.key), key.about))
 }
 
-/// Reads the display of an experiment with its numbers. `None` if no display is named and no number is set.
+/// Reads the display of an experiment and its parameters. Returns `None` if the file names no display and sets no
+/// display parameter.
 pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig>>, FileError> {
     let displays: Vec<(&str, &DisplayEntry)> =
         file.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
@@ -95,7 +96,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
     Ok(Some(config))
 }
 
-/// Sets one number.
+/// Sets one parameter of the display to the value in the file.
 fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Setting) -> Result<(), FileError> {
     let name = config.name();
     let tables = config.tables_mut();
@@ -113,7 +114,7 @@ fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Se
     Ok(())
 }
 
-/// Returns the value of a number in the unit of the table.
+/// Converts the value of a display parameter to the unit of the display's table.
 fn number(key: &NumberKey, path: &str, setting: &Setting) -> Result<Number, FileError> {
     let found = plain(&setting.value);
     if let Some((_, value)) = key.words.iter().find(|(word, _)| *word == found) {
@@ -139,7 +140,7 @@ fn unit_text(key: &NumberKey) -> String {
     }
 }
 
-/// Returns the range of a number in the unit of the experiment file.
+/// Returns the range of a display parameter in the unit of the experiment file.
 fn limits(key: &NumberKey, table: &dyn ParameterTable) -> String {
     let info = table.infos().iter().find(|info| info.name == key.parameter);
     let text = |value: Number| match value {

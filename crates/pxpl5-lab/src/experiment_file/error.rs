@@ -4,20 +4,20 @@ use pxpl5_machine::ConfigError;
 use pxpl5_scene::{LoadError, RangeError, SceneError};
 use thiserror::Error;
 
-/// Error of an experiment file or a setting. Every message names the place and the key, the expected value and the
-/// value found.
+/// Error of an experiment file or a setting. Every message names the file or option, the key, the expected value and
+/// the value found.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// An experiment file that cannot be read.
+    /// The experiment file cannot be read.
     #[error("{file}: expected a readable experiment file, found: {reason}")]
     Io {
-        /// Path of the file, as the user gave it.
+        /// Path of the file, as given by the user.
         file: String,
         /// Message of the operating system.
         reason: String,
     },
-    /// Text that is not valid TOML.
+    /// The text is not valid TOML.
     #[error("{place}: not TOML: {reason}")]
     Syntax {
         /// File and line, or the command line option.
@@ -25,7 +25,7 @@ pub enum FileError {
         /// Message of the TOML parser.
         reason: String,
     },
-    /// A key that does not exist.
+    /// The key does not exist.
     #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
     UnknownKey {
         /// File and line, or the command line option.
@@ -35,7 +35,7 @@ pub enum FileError {
         /// Most similar valid key.
         nearest: String,
     },
-    /// A value of the wrong type or out of range.
+    /// The value has the wrong type or is out of range.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
         /// File and line, or the command line option.
@@ -44,10 +44,10 @@ pub enum FileError {
         key: String,
         /// Valid values of the key, in words.
         expected: String,
-        /// Value that the user gave, cut to 60 characters.
+        /// Value that the user gave, shortened to 60 characters.
         found: String,
     },
-    /// A setting that does not apply to the chosen pipeline.
+    /// The setting does not apply to the chosen pipeline.
     #[error("{place}: {key} does not apply to the pipeline {pipeline}; leave it out (it is for {applies_to})")]
     NotApplicable {
         /// File and line, or the command line option.
@@ -59,15 +59,15 @@ pub enum FileError {
         /// Pipelines that have the key, separated by commas.
         applies_to: String,
     },
-    /// A required setting that is missing.
+    /// A required setting is missing.
     #[error("{key} is missing: give {how}")]
     Missing {
         /// Path of the missing key.
         key: &'static str,
-        /// Example of a value.
+        /// Example of a value for the key, in words.
         how: &'static str,
     },
-    /// A head, tracker or predictor that cannot be built.
+    /// The head motion, tracker or predictor cannot be built.
     #[error("{place}: {reason}")]
     Head {
         /// File and line, or the command line option.
@@ -75,32 +75,32 @@ pub enum FileError {
         /// Expected value and value found, in words.
         reason: String,
     },
-    /// Two settings that set the same number.
+    /// A machine parameter and a key of the pipeline set the same number.
     #[error("{place}: {key} and {other} set the same numbers; leave one out")]
     Conflict {
         /// File and line, or the command line option.
         place: String,
         /// Path of the machine's parameter.
         key: String,
-        /// Key of the pipeline that sets the parameter too, with its value.
+        /// Key of the pipeline that sets the same parameter, with its value.
         other: String,
     },
-    /// A machine that cannot be built.
+    /// The machine cannot be built.
     #[error("{place}: {error}")]
     Config {
-        /// File and line, or the command line option. The text "machine" if the error concerns the machine as a
+        /// File and line, or the command line option. The text is "machine" if the error concerns the machine as a
         /// whole.
         place: String,
         /// Error of the machine's configuration.
         error: ConfigError,
     },
-    /// A built-in scene that does not exist.
+    /// The built-in scene does not exist.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// A model file that cannot be used.
+    /// The model file cannot be used.
     #[error("{0}")]
     Load(#[from] LoadError),
-    /// A head motion with a parameter out of range.
+    /// A parameter of the head motion is out of range.
     #[error("motion: {0}")]
     Motion(#[from] RangeError),
 }

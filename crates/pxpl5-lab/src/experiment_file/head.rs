@@ -1,4 +1,4 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster before its eyes.
+//! The tracked head of an experiment: its motion, tracker and predictor, and the raster of its display.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
@@ -11,7 +11,7 @@ use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
 use tracking::predict::PredictorConfig;
 
-/// A tracked head of an experiment, with the names of its motion, tracker and predictor.
+/// The tracked head of an experiment, with the names of its motion, tracker and predictor.
 #[derive(Clone, Debug)]
 pub struct HeadChoice {
     motion: String,
@@ -36,8 +36,8 @@ const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
-    /// Reads the head of an experiment, including a recording of its motion. Returns `None` if no `head.` or
-    /// `tracking.` key is set.
+    /// Reads the settings of an experiment's head, and the recording of its motion if there is one. Returns `None` if
+    /// no `head.` or `tracking.` key is set.
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = reprojection::read(file, pipeline)?;
@@ -67,14 +67,14 @@ impl HeadChoice {
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
-    /// Returns `None`, or an error if a `head.` or `tracking.` key is set without a motion.
+    /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
         let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "how the head moves, such as head.motion = \"pan:200\"";
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// Returns the head with tracker and predictor. All runs of a plan share this head.
+    /// Returns the head with its tracker and predictor. All runs of a plan share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
@@ -117,10 +117,10 @@ impl HeadChoice {
     }
 }
 
-/// Prefix of the keys that assign columns of a recording.
+/// Prefix of the keys that assign the columns of a recording's file.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// Returns the motion with a name. A walk follows the path of the scene.
+/// Builds the head motion with the given name. A walk follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,
@@ -150,7 +150,7 @@ fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
     Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
 }
 
-/// Refuses keys of recordings if the motion is not a recording.
+/// Returns an error if a key for recordings is set but the motion is not a recording.
 fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
@@ -159,7 +159,7 @@ fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), File
     }
 }
 
-/// Parameters of the predictor that tuning would determine.
+/// Parameters of the predictor that automatic tuning determines.
 const TUNED: [&str; 7] = [
     "position_jerk",
     "orientation_jerk",
@@ -170,8 +170,8 @@ const TUNED: [&str; 7] = [
     "baseline",
 ];
 
-/// Returns true if the predictor is tuned, starting from the numbers of `tracking.filter`. Without `head.filter`, the
-/// predictor is tuned unless one of the [`TUNED`] parameters is set.
+/// Returns true if the predictor is tuned automatically. Tuning starts from the values of `tracking.filter`. Without
+/// `head.filter`, the predictor is tuned unless one of the [`TUNED`] parameters is set.
 fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
     let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;

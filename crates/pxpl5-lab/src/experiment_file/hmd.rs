@@ -6,10 +6,10 @@ use pxpl5_run::Pipeline;
 use pxpl5_scene::{Hmd, HmdConfig};
 use toml::Value;
 
-/// Reads the number of a key, and the way to set it in the display.
+/// A parameter of the head-mounted display: its key, its explanation, and the functions that set and return its value.
 type Number = (&'static str, &'static str, fn(&mut HmdConfig, f64), fn(&HmdConfig) -> f64);
 
-/// Keys of the head-mounted display with their explanations.
+/// Keys of the head-mounted display's parameters, with their explanations.
 pub(super) const NUMBERS: [Number; 4] = [
     (
         "hmd.field_of_view",
@@ -37,12 +37,12 @@ pub(super) const NUMBERS: [Number; 4] = [
     ),
 ];
 
-/// Reads the display's numbers.
+/// Reads the parameters of the head-mounted display.
 ///
 /// # Errors
 ///
-/// Fails for a number out of its range. Fails for a pipeline that draws faces around the head, because the optics of its display belong to
-/// that display's parameters.
+/// Fails if a value is out of range. Also fails for a pipeline that draws cube faces around the head, because the
+/// optics of such a display are among that display's own parameters.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd, FileError> {
     let mut config = HmdConfig::unc();
     for (key, _, set, _) in NUMBERS {
@@ -67,7 +67,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     })
 }
 
-/// Returns the numbers that differ from those of the papers' display, with their keys.
+/// Returns the parameters that differ from those of the papers' display, with their keys.
 pub(super) fn settings(hmd: &Hmd) -> impl Iterator<Item = (&'static str, Value)> {
     let config = *hmd.config();
     let usual = HmdConfig::unc();

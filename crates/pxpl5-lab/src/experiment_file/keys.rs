@@ -8,7 +8,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
 use tracking::motion::Columns;
 
-/// A key of an experiment file with its explanation.
+/// A key of an experiment file, with an explanation for the user.
 #[derive(Clone, Debug)]
 pub struct FileKey {
     /// Path of the key, as written before the equals sign: `motion.path`.
@@ -88,10 +88,11 @@ const COMMON: &[(&str, &str)] = &[
     ("published.value", "its published value"),
 ];
 
-/// Other names of keys, each with the current name.
+/// Former names of keys, each with the current name.
 const RENAMED: [(&str, &str); 2] = [("head.display", "head.raster"), ("display.preset", "display")];
 
-/// Returns all keys except the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
+/// Returns all keys except those of the machine's parameters. A parameter's key is `machine.` followed by a path of
+/// [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
@@ -124,8 +125,8 @@ fn common(path: &str, about: &str) -> FileKey {
     FileKey { path: path.to_owned(), about: about.to_owned(), applies_to: Vec::new() }
 }
 
-/// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` of a machine's parameter is
-/// optional.
+/// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional for a parameter of
+/// the machine.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     // Former names of keys are still accepted.
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
@@ -154,8 +155,8 @@ fn parameters(registry: &Registry) -> Vec<String> {
     machine.settings().into_iter().map(|(path, _)| path).collect()
 }
 
-/// Returns the valid path with the smallest edit distance to an invalid path. A machine's parameter has the prefix
-/// `machine.` only if the invalid path is closer to that form.
+/// Returns the valid path with the smallest edit distance to an invalid path. For a parameter of the machine, the
+/// prefix `machine.` is added only if the invalid path is closer to that form.
 pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));

@@ -1,4 +1,4 @@
-//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from them.
+//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that results from both.
 //!
 //! ```
 //! use pxpl5_lab::ExperimentFile;
@@ -21,8 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`ExperimentFile::keys_of`] lists all keys. Keys without a value get the defaults of [`Plan`]. An unknown key is
-//! an error that names the most similar valid key.
+//! [`ExperimentFile::keys_of`] lists all keys. Keys without a value get the defaults of [`Plan`]. An unknown key is an
+//! error, whose message names the most similar valid key.
 
 mod display;
 mod error;
@@ -56,38 +56,38 @@ use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
-/// A value, with the file and line or the option that gave the value.
+/// The value of a setting, with its origin: a file and line, or an option.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) value: Value,
     pub(crate) place: String,
-    /// Folder to which file names in the value are relative.
+    /// Folder to which relative file names in the value refer.
     pub(crate) folder: PathBuf,
 }
 
-/// Name of a motion whose seed is the seed of the run.
+/// Name of the head motion that takes its seed from the run.
 const SYNTHETIC: &str = "synthetic";
 
-/// Settings by path, read but not yet checked together.
+/// The settings of an experiment by path. Each was read, but their combination is not yet checked.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
     pub(crate) sweep: Option<Setting>,
-    /// File and line of each key within the table `sweep`, by path.
+    /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
-    /// Contents of files in memory, by name.
+    /// Contents of files that are held in memory, by file name.
     contents: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl ExperimentFile {
-    /// Returns a file without settings, with the built-in pipelines and displays.
+    /// Returns a file without settings that can name the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Returns a file without settings, with the pipelines and displays of a registry.
+    /// Returns a file without settings that can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();
@@ -100,8 +100,8 @@ impl ExperimentFile {
         &self.registry
     }
 
-    /// Returns all keys of a registry except two groups. The machine's parameters are `machine.` and a path of
-    /// `MachineConfig::set`. The parameters of trackers and predictors are listed by [`tracking_parameters`].
+    /// Returns all keys of a registry except two groups. The keys of machine parameters are `machine.` followed by a
+    /// path of `MachineConfig::set`. [`tracking_parameters`] lists the parameters of trackers and predictors.
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
@@ -116,7 +116,7 @@ impl ExperimentFile {
         Self::new().and_load(path)
     }
 
-    /// Reads an experiment file and overrides the current settings.
+    /// Reads an experiment file, whose settings override the current settings.
     ///
     /// # Errors
     ///
@@ -131,7 +131,7 @@ impl ExperimentFile {
         self.parse_in(text, &file, &folder)
     }
 
-    /// Parses the text of an experiment file. Error messages refer to the text as `name`.
+    /// Parses the text of an experiment file. Error messages call the text `name`.
     ///
     /// # Errors
     ///
@@ -140,7 +140,7 @@ impl ExperimentFile {
         Self::new().and_parse(text, name)
     }
 
-    /// Parses text and overrides the current settings. Error messages refer to the text as `name`.
+    /// Parses text, whose settings override the current settings. Error messages call the text `name`.
     ///
     /// # Errors
     ///
@@ -172,7 +172,7 @@ impl ExperimentFile {
         Ok(self)
     }
 
-    /// Sets a value. Error messages refer to its origin as `place`, such as `--fields`.
+    /// Sets the value of a key. `place` names the origin of the value in error messages, such as `--fields`.
     ///
     /// # Errors
     ///
@@ -181,8 +181,8 @@ impl ExperimentFile {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Provides the contents of a model or a recording in memory, used wherever a setting names that file. Hosts
-    /// without files, such as browsers, need this.
+    /// Provides the contents of a model or recording from memory. They are used wherever a setting names the file
+    /// `name`. Hosts without a file system, such as browsers, need this.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
@@ -193,7 +193,7 @@ impl ExperimentFile {
         self.contents.get(name)
     }
 
-    /// Returns the place where a key was set (a line or an option), or `None` if the key is not set.
+    /// Returns the line or option that set a key, or `None` if the key is not set.
     #[must_use]
     pub fn place_of(&self, key: &str) -> Option<&str> {
         self.settings.get(key).map(|setting| setting.place.as_str())
@@ -208,7 +208,7 @@ impl ExperimentFile {
         Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
     }
 
-    /// Returns the checked experiment for one seed. A `head.motion` of `synthetic` uses the same seed.
+    /// Returns the checked experiment for one seed. If `head.motion` is `synthetic`, the motion has the same seed.
     ///
     /// # Errors
     ///
@@ -222,7 +222,7 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Sets `path=value`. A value that is not valid TOML is taken as text.
+    /// Sets a key from the text `path=value`. A value that is not valid TOML is taken as a string.
     ///
     /// # Errors
     ///
@@ -238,7 +238,7 @@ impl ExperimentFile {
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
     }
 
-    /// Stores a setting under its full path.
+    /// Stores a value under the full path of its key.
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
         let canonical = self.canonical_key(path, &place)?;
         let setting = Setting { value, place, folder: folder.to_owned() };
@@ -271,7 +271,7 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Overrides the settings with all settings of another file.
+    /// Copies all settings of another file into this one. They override the current settings.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;
@@ -293,8 +293,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the leaves of a value with their paths and byte positions. An empty table is a leaf, so that the table is
-/// not lost.
+/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that it
+/// is not lost.
 fn flat(
     path: String,
     value: Value,
@@ -315,7 +315,7 @@ fn flat(
     entries.collect()
 }
 
-/// Returns the byte position of every key within a table, by path.
+/// Returns the byte position of every key within a TOML table, by path.
 fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     let entries = table.as_table().into_iter().flatten();
     let nested = entries.flat_map(|(key, value)| {
@@ -326,7 +326,7 @@ fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     nested.collect()
 }
 
-/// Returns the name and line of a byte position, for errors.
+/// Returns the file name and the line number of a byte position, for error messages.
 fn place(text: &str, name: &str, at: usize) -> String {
     format!("{name}, line {}", line(text, at))
 }
@@ -337,7 +337,7 @@ fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
     FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }
 }
 
-/// Returns the line of a byte position, counted from 1.
+/// Returns the line number of a byte position, counted from 1.
 fn line(text: &str, at: usize) -> usize {
     1 + text.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count()
 }

@@ -1,4 +1,4 @@
-//! The head motion of an experiment without a tracker.
+//! The head motion of an experiment in which the head has no tracker.
 
 use super::read::wrong;
 use super::{ExperimentFile, FileError};
@@ -6,43 +6,43 @@ use glam::Vec3;
 use pxpl5_scene::config::FIT_DISTANCE_RADII;
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
 
-/// The motion of a head without a tracker.
+/// The motion of a head without a tracker, in front of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionChoice {
     /// Path of the head. `None` for the scene's own path.
     pub path: Option<PathChoice>,
-    /// Scale of the head's sway, 0 to 10. `None` for the default of the path.
+    /// Scale factor of the head's random sway, 0 to 10. `None` for the default of the path.
     pub sway: Option<f64>,
 }
 
 /// A path of the head around the scene's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathChoice {
-    /// Stands in front of the scene.
+    /// The head stands still in front of the scene.
     Still {
-        /// Metres from the scene's centre. `None` fits the scene into the view.
+        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// Looks at the scene and walks back and forth.
+    /// The head looks at the scene and walks back and forth.
     Look {
-        /// Metres from the scene's centre. `None` fits the scene into the view.
+        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// Circles around the scene.
+    /// The head circles around the scene.
     Orbit {
-        /// Metres from the scene's centre. `None` fits the scene into the view.
+        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
         /// Rate of the circular motion in degrees per second.
         deg_per_s: f64,
     },
-    /// Stands in front of the scene and turns.
+    /// The head stays in front of the scene and turns.
     Pan {
         /// Rate of turn in degrees per second.
         deg_per_s: f64,
     },
 }
 
-/// Default rate of a turning head: the mean of recorded head motion (see `pxpl5_scene::config`).
+/// Default rate of a turning head in degrees per second: the mean of recorded head motion (see `pxpl5_scene::config`).
 const DEG_PER_S: f64 = pxpl5_scene::config::MEAN_HEAD_SPEED_DEG_PER_S;
 
 impl MotionChoice {
@@ -69,7 +69,7 @@ impl MotionChoice {
         Ok(Self { path, sway: file.number("motion.sway")? })
     }
 
-    /// Returns the motion around a scene.
+    /// Returns the head motion in front of a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, FileError> {
         let own = scene.motion();
         let path = self.path.map_or(*own.path(), |path| path.around(scene));
@@ -98,7 +98,7 @@ impl PathChoice {
     }
 }
 
-/// Returns the point at a distance in metres from `target`, on its +z side.
+/// Returns the point at a distance in metres from `target`, in the direction +z.
 fn before(target: Vec3, distance: f64) -> Vec3 {
     target + Vec3::Z * distance as f32
 }

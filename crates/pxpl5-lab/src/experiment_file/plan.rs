@@ -31,7 +31,7 @@ pub struct Outputs {
     pub csv: bool,
 }
 
-/// The published figure that an experiment reproduces.
+/// A published figure that the experiment reproduces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
     /// Number of the figure. `None` if the paper does not number the figure.
@@ -65,19 +65,19 @@ fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, File
 /// A checked experiment, in which every setting has a value and no two settings contradict each other.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Title of one line for the user.
+    /// Title of the experiment in one line, for the user.
     pub title: Option<String>,
-    /// Registry of pipelines and displays.
+    /// Registry of the pipelines and displays that the experiment can name.
     pub registry: Arc<Registry>,
-    /// Pipeline, built from its keys in the file.
+    /// Pipeline, built from the settings that it reads from the file.
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion by which the largest number of triangles drawn in time is found.
     pub limit: LimitCriterion,
-    /// Machine: a preset that the pipeline has adapted, with the parameters of the file.
+    /// Machine: a preset, adapted by the pipeline, with the parameters of the file.
     pub machine: MachineConfig,
-    /// Scene by name, not yet loaded.
+    /// Scene by name and settings. The scene itself is not yet loaded.
     pub scene: SceneChoice,
-    /// Number of fields to simulate; default 120.
+    /// Number of display fields to simulate; default 120.
     pub fields: u64,
     /// Seed of the head motion; default 1.
     pub seed: u64,
@@ -85,11 +85,11 @@ pub struct Plan {
     pub level: Level,
     /// Head with its tracker. `None` for the scene's own motion without tracking delay.
     pub head: Option<HeadChoice>,
-    /// Head-mounted display before the viewer's eyes.
+    /// Head-mounted display that the viewer wears.
     pub hmd: Hmd,
-    /// Pixels that are computed; default only pixels that are read.
+    /// Choice of the pixels that are computed. By default only pixels that are read later.
     pub pixels: Pixels,
-    /// Quantities for tables and rows.
+    /// Quantities that tables and rows of results contain.
     pub measure: Vec<Measure>,
     /// Files that a run writes in addition to its report.
     pub output: Outputs,
@@ -135,7 +135,7 @@ impl ExperimentFile {
         })
     }
 
-    /// Returns the quantities that `measure` names, or the default ones.
+    /// Returns the quantities that the key `measure` names, or the default quantities.
     fn measures(&self) -> Result<Vec<Measure>, FileError> {
         match self.texts("measure")? {
             Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
@@ -143,7 +143,7 @@ impl ExperimentFile {
         }
     }
 
-    /// Returns the pipeline's registry entry and its keys in the file.
+    /// Returns the pipeline's registry entry, and the values of the pipeline's keys in the file.
     fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), FileError> {
         let names: Vec<(&str, &PipelineEntry)> =
             self.registry().pipelines().iter().map(|entry| (entry.name, entry)).collect();
@@ -178,7 +178,7 @@ impl ExperimentFile {
         lens.map(Some).map_err(|_| wrong(key.name, setting, &KeyValues::Lens.to_string()))
     }
 
-    /// Refuses keys of other pipelines.
+    /// Returns an error for a key that belongs to another pipeline.
     fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), FileError> {
         for (key, families) in self.registry().keys() {
             if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {
@@ -240,7 +240,7 @@ impl ExperimentFile {
         Ok(machine)
     }
 
-    /// Returns the place of the setting that caused an error of the machine.
+    /// Returns the origin (line or option) of the setting that caused an error of the machine.
     fn place_of_error(&self, error: &ConfigError) -> &str {
         let key = match error {
             ConfigError::Value { what, .. } => format!("machine.{what}"),
@@ -252,7 +252,7 @@ impl ExperimentFile {
         self.get(&key).map_or("machine", |setting| &setting.place)
     }
 
-    /// Refuses a parameter that a key of the pipeline sets too, unless both give the same value.
+    /// Returns an error for a parameter that a key of the pipeline also sets, unless both values are the same.
     fn refuse_twice(
         &self,
         entry: &PipelineEntry,
@@ -279,7 +279,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Names of the origins of primitive times. True stands for the times of executed code.
+/// Possible origins of primitive times, by name. True stands for the times of executed code.
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
@@ -302,23 +302,24 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head,
-    /// those of the tracker, the host's port and the predictor. Paths of the latter begin with `tracking.`.
+    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head, those
+    /// of the tracker, the host's port and the predictor. Paths of tracking parameters begin with `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
         self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
-    /// Returns the parameters of machine and tracking whose values lie outside the range of their sources.
+    /// Returns the parameters of machine and tracking whose values lie outside the range that their sources allow.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.head().unsupported_parameters().to_vec());
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// Returns warnings about settings that do not represent the real machine: parameters out of range, and times
-    /// from a table where executed code was requested. Warnings about the head's recording are included.
+    /// Returns warnings about settings that do not represent the real machine. Two kinds exist: parameters out of
+    /// range, and times from a table although executed code was requested. Warnings about the head's recording are
+    /// included.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
@@ -332,13 +333,13 @@ impl Plan {
         self.level.name().to_owned()
     }
 
-    /// Returns the name of the display that the pipeline draws for.
+    /// Returns the name of the display on which the pipeline shows its pictures.
     #[must_use]
     pub fn display(&self) -> &'static str {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
-    /// Returns the experiment with a loaded scene, for execution on this computer.
+    /// Returns the experiment with a loaded scene, to be executed on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
@@ -357,7 +358,7 @@ impl Plan {
         }
     }
 
-    /// Runs the experiment at its level, without pixels.
+    /// Runs the experiment at its level of modelling, without computing pixels.
     ///
     /// # Errors
     ///

@@ -30,8 +30,8 @@ impl ExperimentFile {
             .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    /// Returns the value of a parameter, as a real number if the TOML value has a fraction, otherwise as a whole
-    /// number.
+    /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number, any other a
+    /// whole number.
     pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
@@ -53,8 +53,8 @@ impl ExperimentFile {
         list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
-    /// Returns one of several named values. A number matches the name with the same digits, so that `code = 1994`
-    /// needs no quotes.
+    /// Returns the one of several named values that a key selects. A number selects the name with the same digits, so
+    /// that `code = 1994` needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, FileError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);
@@ -67,7 +67,7 @@ impl ExperimentFile {
     }
 }
 
-/// Returns a value as text without quotes.
+/// Returns a TOML value as text without quotes.
 pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -77,7 +77,7 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> FileError {
     FileError::Value { place: setting.place.clone(), key: key.to_owned(), expected: expected.to_owned(), found }
 }
 
-/// Returns the path of a file relative to a folder.
+/// Returns the path of a file whose name is relative to a folder.
 pub(crate) fn beside(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }

@@ -1,25 +1,25 @@
-//! The raster before a tracked head's eyes: plain, the raster offset of VDRT, or a device that moves pictures.
+//! The raster in a tracked head's display: plain, the raster offset of VDRT, or a device that moves pictures.
 
 use super::read::wrong;
 use super::{ExperimentFile, FileError};
 use pxpl5_run::{Every, Pipeline, Raster, Reprojection, Warp};
 use toml::Value;
 
-/// Keys of a device that moves pictures.
+/// Key for the parameter `every` of a device that moves pictures.
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
-/// Values of `head.raster`.
+/// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// How a raster is named: those without numbers of their own, and the ways in which a device moves pictures.
+/// A raster as its name selects it: a raster without parameters, or a device that moves pictures in a certain way.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),
     Device(Warp),
 }
 
-/// Reads the raster; a pipeline without one pose a picture has no raster offset.
+/// Reads the raster of an experiment. A raster offset requires a pipeline in which each picture has one head pose.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, FileError> {
     let plain = Raster::ALL.map(|(name, raster)| (name, Named::Raster(raster)));
     let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
@@ -52,7 +52,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
     }
 }
 
-/// Numbers of a device have no meaning without one.
+/// Returns an error if a parameter of a device is set without a device that moves pictures.
 fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
     for key in [EVERY, LATENCY] {
         if let Some(setting) = file.get(key) {
@@ -62,7 +62,7 @@ fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The settings that stand for a raster.
+/// Returns the settings that select a raster, as keys and values.
 pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
     let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];

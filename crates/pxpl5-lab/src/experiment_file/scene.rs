@@ -7,20 +7,21 @@ use pxpl5_scene::{Format, Placement, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene to draw: its origin, its number of primitives, and the head motion in front of it.
+/// The scene of an experiment: its name or file, its number of primitives, and the head motion in front of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// Name of a built-in scene, or path of a model file.
     pub name: String,
-    /// Placement of a model file: fitted into the view, or at its own coordinates. A built-in scene is never moved.
+    /// Placement of a model file: fitted into the view, or kept at its own coordinates. A built-in scene is never
+    /// moved.
     pub placement: Placement,
-    /// Number of primitives after decimation. `None` for all.
+    /// Number of primitives to which the scene is reduced. `None` keeps all primitives.
     pub triangles: Option<usize>,
-    /// True if all structures of the scene drop their back faces.
+    /// True if the back faces of all structures of the scene are removed.
     pub culled: bool,
-    /// Motion of a head without a tracker.
+    /// Motion of the head if the experiment has no tracker.
     pub motion: MotionChoice,
-    /// Contents of the model file in memory ([`ExperimentFile::with_contents`]), used instead of the host's file.
+    /// Contents of the model file ([`ExperimentFile::with_contents`]). If present, the host's file is not read.
     pub contents: Option<Arc<[u8]>>,
 }
 
@@ -50,7 +51,7 @@ impl SceneChoice {
         self.prepared(Arc::new(self.load_whole()?))
     }
 
-    /// Returns the corners of the scene's closed path. Model files have no path.
+    /// Returns the corners of the scene's closed path. The list is empty for a model file, which has no path.
     pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, FileError> {
         if is_file(&self.name) { Ok(Vec::new()) } else { Ok(pxpl5_scene::builtin(&self.name)?.path().to_vec()) }
     }
@@ -64,7 +65,7 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// Returns the whole scene, decimated and with the chosen head motion.
+    /// Returns the scene, reduced to the chosen number of primitives, and with the chosen head motion.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
         // A scene with no more primitives than requested is drawn whole.
         let scene = match self.triangles {
@@ -82,8 +83,8 @@ impl SceneChoice {
     }
 }
 
-/// Returns true if a scene's name is a path: it contains a separator or an extension of any format. No built-in scene
-/// has an extension, because the part behind the dot in `typical:1.5` does not start with a letter.
+/// Returns true if a scene's name is the path of a file: it contains a separator or a file extension. A built-in scene
+/// has no extension, because the part behind the dot in `typical:1.5` does not start with a letter.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension =
         Path::new(name).extension().map(|end| end.to_string_lossy().starts_with(|c: char| c.is_alphabetic()));

@@ -1,4 +1,4 @@
-//! Conversion of a plan to the text of a complete experiment file.
+//! Converts a plan to the text of a complete experiment file.
 
 use super::hmd;
 use super::motion::PathChoice;
@@ -13,16 +13,16 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Effective settings by path. Their `Display` output is an experiment file with the same meaning.
+/// Effective settings by path. Displayed as text, they form an experiment file with the same meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Values of the settings as TOML, by the path of their key.
     pub values: BTreeMap<String, Value>,
-    /// Remarks by path: the unit, the provenance, and the value in the preset.
+    /// Remarks by the path of the key: unit, provenance, and the value in the preset.
     remarks: BTreeMap<String, String>,
 }
 
-/// Returns the name of a choice.
+/// Returns the name of a value from a list of choices.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
     choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }
@@ -55,8 +55,8 @@ impl Plan {
         all
     }
 
-    /// Returns every setting with its effective value, for an experiment file in any folder. Names of files, which
-    /// are relative to the folder of the experiment file, become absolute.
+    /// Returns every setting with its effective value, for an experiment file in any folder. File names that are
+    /// relative to the folder of the experiment file become absolute.
     #[must_use]
     pub fn settings_for_any_folder(&self) -> Settings {
         let mut all = self.settings();
@@ -70,8 +70,8 @@ impl Plan {
         all
     }
 
-    /// Returns a hash of the settings that determine the result. Settings of pixels, output files and comparison are
-    /// excluded.
+    /// Returns a hash of the settings that determine the result. Excluded are settings of pixels, output files, and the
+    /// comparison with a published figure.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         // These settings do not change the simulated result.
@@ -154,8 +154,8 @@ impl Settings {
         }
     }
 
-    /// Adds a parameter under its key. Its remark states unit and provenance, and the value in the preset if the two
-    /// differ.
+    /// Adds a parameter under its key. The remark states unit and provenance. If the value differs from the preset, the
+    /// remark also states the preset's value.
     fn parameter(&mut self, key: &str, parameter: &Parameter, preset: &[Parameter]) {
         let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
         let changed = own.filter(|own| *own != parameter.value);

@@ -1,4 +1,4 @@
-//! Parameters of trackers, predictors and the host's port, set by an experiment as `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's port. An experiment sets them by the keys `tracking.table.name`.
 
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;
@@ -7,15 +7,15 @@ use pxpl5_machine::{ConfigError, Parameter};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{HostLine, TrackerConfig};
 
-/// Prefix of every path.
+/// Prefix of every parameter's path.
 const PREFIX: &str = "tracking.";
 
 /// Tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in front of the
 /// filters.
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
-/// Returns every parameter of tracking with its published value. Parameters of heads, the measuring rig, the video
-/// and the papers' pictures are read-only. They are facts to compare models with, not settings of a tracked head.
+/// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the
+/// papers' pictures are read-only. They are facts for comparison with a model, not settings of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
@@ -27,7 +27,7 @@ fn parameters_of(name: &str, table: &dyn ParameterTable, read_only: bool) -> Vec
     Parameter::of_table(&format!("{PREFIX}{name}"), table, read_only).collect()
 }
 
-/// Returns the parameters that have an effect on a tracker, whose own table is named `own`.
+/// Returns the parameters that have an effect on a tracker. `own` is the name of the tracker's own table.
 pub(super) fn parameters_with(tables: &Tables, own: &str, tracker: &TrackerConfig) -> Vec<Parameter> {
     let applying = tables.all().into_iter().filter(|(name, _)| applies(name, own));
     let numbers = applying.flat_map(|(name, table)| parameters_of(name, table, false));
@@ -52,12 +52,12 @@ fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     }
 }
 
-/// Returns true if the path is a parameter of tracking.
+/// Returns true if the path denotes a tracking parameter.
 pub(super) fn is_tracking_parameter(path: &str) -> bool {
     path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
 }
 
-/// Returns the tables with the parameters that a file sets, for a tracker.
+/// Returns the tables of tracking parameters, with the values that a file sets for a tracker.
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.

@@ -1,4 +1,4 @@
-//! Units in settings: `20us`, `16.7ms`, `60deg`, `640px`.
+//! Values with units in settings: `20us`, `16.7ms`, `60deg`, `640px`.
 //!
 //! A plain number has the unit that its key documents. A number with a unit is converted to that unit.
 
@@ -7,7 +7,7 @@ use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::Registry;
 use toml::Value;
 
-/// Units of one kind with their size in the first of them.
+/// Units of one quantity, such as time. Each has its size as a multiple of the first unit.
 type Kind = &'static [(&'static str, f64)];
 
 const TIMES: Kind = &[("ps", 1.0), ("ns", 1e3), ("us", 1e6), ("ms", 1e9), ("s", 1e12)];
@@ -21,7 +21,7 @@ const PIXELS: Kind = &[("px", 1.0), ("pixels", 1.0)];
 
 const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, PIXELS];
 
-/// Units of keys that are no parameters.
+/// Units of the keys that are not machine or tracking parameters.
 const UNITS: [(&str, &str); 7] = [
     ("motion.distance", "m"),
     ("motion.deg_per_s", "deg/s"),
@@ -32,13 +32,14 @@ const UNITS: [(&str, &str); 7] = [
     ("hmd.far", "m"),
 ];
 
-/// Converts a text such as `20us` to the unit of a key.
+/// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` for a text that is no number with a unit, and for a key without a unit: then the text stays what it is.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. The text then stays
+/// unchanged.
 ///
 /// # Errors
 ///
-/// States which units the key takes, for a number with another unit.
+/// For a number with a wrong unit, returns a text with the units that the key accepts.
 pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Option<Value>, String> {
     let Some((number, unit)) = split(text) else { return Ok(None) };
     let Some(wanted) = unit_of(registry, key) else { return Ok(None) };
@@ -56,7 +57,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     Ok(Some(value(number * from / to)))
 }
 
-/// Splits a text into a number and a unit; `None` if it has not both.
+/// Splits a text into a number and a unit. Returns `None` if one of them is missing.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // An exponent belongs to the number; no unit begins with e.
@@ -68,7 +69,8 @@ fn split(text: &str) -> Option<(f64, &str)> {
     (!unit.is_empty() && number.is_finite()).then_some((number, unit))
 }
 
-/// A number that is whole but for rounding is a whole number: 16.7 ms are 16,700,000 ns.
+/// Converts a number to TOML. A number that is whole except for rounding errors becomes a whole number: 16.7 ms are
+/// 16,700,000 ns.
 fn value(number: f64) -> Value {
     let whole = number.round();
     if (number - whole).abs() <= 1e-9 * number.abs().max(1.0) && whole.abs() < 9e15 {
@@ -77,7 +79,7 @@ fn value(number: f64) -> Value {
     Value::Float(number)
 }
 
-/// Returns the unit of a key; `None` for a key without one.
+/// Returns the unit of a key, or `None` if the key has no unit.
 fn unit_of(registry: &Registry, key: &str) -> Option<String> {
     if let Some((_, unit)) = UNITS.iter().find(|(name, _)| *name == key) {
         return Some((*unit).to_owned());

@@ -1,5 +1,5 @@
-//! A cache shared by benches: application scenes of the papers, loads of their fly-throughs, measurements of the rig,
-//! and results of experiments.
+//! A cache of intermediate results that several measurements share. The cache holds application scenes of the papers,
+//! loads of their fly-throughs, measurements of the rig, and results of experiments.
 
 use super::measured::{FigureValue, Result, scene_named};
 use crate::limit::Limit;
@@ -9,25 +9,26 @@ use pxpl5_scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Name of a scene, and true if its back faces are dropped.
+/// Cache key: name of a scene, and true if its back faces are removed.
 type Key = (&'static str, bool);
 
-/// Name of a scene, true if its back faces are dropped, number of seeds, and number of frames.
+/// Cache key: name of a scene, true if its back faces are removed, number of seeds, and number of frames.
 type LoadsKey = (&'static str, bool, u64, u64);
 
-/// Loads of every view of a fly-through, one list for each seed.
+/// Loads (amounts of work) of every frame of a fly-through, one list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
-/// Number of finished regions that a renderer keeps, the master's rule, and changed parameters.
+/// Cache key of a rig measurement: number of finished regions that a renderer keeps, the master's rule for finished
+/// regions, and changed parameters.
 pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 
-/// The cached value of one key, `None` until it is computed.
+/// The cached value of one key. `None` until the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
 /// The cached values of all requested keys.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
-/// The cache of scenes, loads and results.
+/// The cache of scenes, loads, measurements and results.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Places<Key, Scene>,
@@ -37,8 +38,8 @@ pub(crate) struct Applications {
     limits: Places<String, Limit>,
 }
 
-/// Returns the cache key of an experiment with a built-in scene: everything that determines its result (machine,
-/// pipeline, scene, length, seed and level).
+/// Returns the cache key of an experiment with a built-in scene. The key contains everything that determines the
+/// result: machine, pipeline, scene, length, seed and level.
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
     format!(
         "{scene} {} {} {:?} {:?} {:?}",
@@ -59,12 +60,12 @@ impl Applications {
         find_or_compute(&self.scenes, (name, culled), make)
     }
 
-    /// Returns the loads of a scene. `make` computes them at the first request.
+    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes them at the first request.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurement of the pendulum rig for some rules. `make` computes the measurement at the first
+    /// Returns the measurement with the pendulum rig for the given rules. `make` performs the measurement at the first
     /// request.
     pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
         find_or_compute(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
@@ -72,7 +73,7 @@ impl Applications {
 }
 
 impl Applications {
-    /// Returns the summary of an experiment. `make` computes the summary at the first request.
+    /// Returns the summary of an experiment. `make` runs the experiment at the first request.
     pub(super) fn summary(&self, key: String, make: impl FnOnce() -> Result<Summary>) -> Result<Arc<Summary>> {
         find_or_compute(&self.summaries, key, || make().map(Arc::new))
     }
@@ -83,9 +84,10 @@ impl Applications {
     }
 }
 
-/// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the
-/// result. `make` must not run work on other threads. A thread that waits for them could take over work that requests
-/// the same key, and deadlock.
+/// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the result.
+///
+/// `make` must not run work on other threads. While the calling thread waits for such work, it could take over other
+/// work that requests the same key, and deadlock.
 fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());

@@ -7,7 +7,7 @@ use crate::levels::deviation_percent;
 use crate::readings::{self, FigureFit, Fit, Readings};
 use std::fmt::Write as _;
 
-/// Returns ACCURACY.md: a table of all figures, then each miss with its cause.
+/// Returns the text of ACCURACY.md: a table of all figures, then each miss with its cause.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -26,11 +26,11 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-/// Minimum difference, in percent, between the timing table and executed code for a figure to be listed.
+/// Minimum difference in percent between the timing table and executed code for which a figure is listed.
 const MOVED_PERCENT: f64 = 0.05;
 
-/// Writes the figures that change with the times of executed code, and the reason why these times are not the
-/// default.
+/// Writes the figures that change when the times of executed code are used. Also writes the reason why these times are
+/// not the default.
 fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
@@ -73,10 +73,11 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     );
 }
 
-/// Number of interpretations listed.
+/// Number of interpretations of the papers that the document lists.
 const BEST: usize = 12;
 
-/// Writes the table of interpretations: the figures that each explains, and the confidence of the choice.
+/// Writes the table of interpretations, with the figures that each interpretation explains. Also writes the confidence
+/// of the choice.
 fn of_readings(text: &mut String, readings: &Readings) {
     // State how likely the default interpretation is, compared with the most likely one.
     let fits = &readings.analytic;
@@ -155,7 +156,7 @@ fn fitted(fit: &Fit) -> String {
     )
 }
 
-/// Writes the effect of the application's time on the mean and deviation of the fly-throughs.
+/// Writes the effect of the application's time on the mean and standard deviation of the fly-throughs' latencies.
 fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
@@ -179,7 +180,7 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
     }
 }
 
-/// Number of parameters listed for each figure.
+/// Number of parameters that the document lists for each figure.
 const STRONGEST: usize = 4;
 
 fn sensitivity(text: &mut String, intervals: &[Interval]) {

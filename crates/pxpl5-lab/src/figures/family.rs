@@ -1,4 +1,5 @@
-//! Figures of papers about other systems. They have a row type of their own and follow the figures of Pixel-Planes 5.
+//! Figures of papers about systems other than Pixel-Planes 5. These figures have a row type of their own, and follow
+//! the figures of Pixel-Planes 5 in the document.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
@@ -14,10 +15,10 @@ use tracking::motion::Pan;
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Figures of one group of papers about another system.
+/// Figures of one group of papers about another system than Pixel-Planes 5.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureFamily {
-    /// Title of the group's section.
+    /// Title of the group's section in the document.
     pub title: &'static str,
     /// Path of the document with more details.
     pub document: &'static str,
@@ -25,21 +26,21 @@ pub struct FigureFamily {
     pub rows: Vec<Row>,
 }
 
-/// Numbers of triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
+/// Sizes in triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
-/// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a smaller growth of latency
-/// may be invisible.
+/// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a growth of latency below this
+/// duration may be invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
 /// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
-/// Number of first fields that all runs of experiment E1 share.
+/// Number of fields from the start that all runs of experiment E1 have in common.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
-    /// Runs the experiments on address recalculation, priority rendering and region warping: E1 on Pixel-Planes 5, E2
-    /// to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are left to the
+    /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
+    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are only in the
     /// document.
     ///
     /// # Errors
@@ -82,9 +83,9 @@ impl FigureFamily {
     }
 }
 
-/// Runs E1, which measures two latencies with growing numbers of triangles: that of the head's rotation with the
-/// display, and that of a picture under Rendering Control. Under Rendering Control the head looks at the triangles
-/// all the time, because triangles out of sight are not drawn.
+/// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
+/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control.
+/// There the head looks at the triangles all the time, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();
@@ -112,7 +113,7 @@ fn turning(bench: &Bench) -> Result<Vec<Row>> {
     Ok(rows.map(|row| row.of("E1")).to_vec())
 }
 
-/// Runs an experiment with a head that turns at 200 degrees a second.
+/// Runs an experiment in which the head turns at 200 degrees per second.
 fn turned(experiment: Experiment) -> Result<Outcome> {
     let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;

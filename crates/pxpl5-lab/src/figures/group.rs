@@ -1,5 +1,6 @@
-//! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured in runs
-//! with events at every level of the bench. None counts in the mean error of the main table.
+//! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
+//! simulation with events, whichever level of modelling is chosen. No figure of a group counts in the mean error of the
+//! main table.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
@@ -13,21 +14,22 @@ use std::fmt::Write as _;
 pub struct FigureGroup {
     /// Name of the topic.
     pub title: &'static str,
-    /// Conditions shared by all rows of the group, and conditions that the papers leave open.
+    /// Conditions shared by all rows of the group. Also conditions that the papers leave open.
     pub about: &'static str,
     /// Rows in the order of the group's table.
     pub rows: Vec<FigureRow>,
 }
 
-/// A published figure with its experiment.
+/// A published figure, with the experiment that measures it.
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that are set to both ends of their ranges, one at a time.
+    /// Paths of the parameters that are varied for the figure's interval. One at a time, each takes both ends of its
+    /// range.
     pub(super) moved_by: &'static [&'static str],
 }
 
-/// A topic with its experiments.
+/// A topic, with the experiments of its figures.
 pub(super) struct Topic {
     pub(super) title: &'static str,
     pub(super) about: &'static str,
@@ -115,8 +117,8 @@ impl Measurement {
         Ok(FigureRow { interval, ..FigureRow::new(&self.figure, measured) })
     }
 
-    /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value
-    /// for the presets. A setting for which the experiment has no value counts as the preset's value.
+    /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value for
+    /// the presets. If the experiment yields no value for a setting, the preset's value counts.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));

@@ -1,4 +1,4 @@
-//! Figures with a tracked head: the pendulum rig, and the latency from head to light.
+//! Figures that need a tracked head: the pendulum rig, and the latency from head to display.
 
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
@@ -12,13 +12,13 @@ use tracking::predict::PredictorKind;
 use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// Path of the rig's photodiode line, the visible line of the screen under the photodiode of figure 17. The path may
-/// occur in a bench's changes.
+/// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
+/// photodiode. A bench may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed
-/// line. The paper does not print the photodiode's position, so the result also states the latency under the first
-/// and the last line.
+/// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed line
+/// if `line` is `None`. The paper does not print the photodiode's position, so the details state the latency under the
+/// first and the last line.
 pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
     if let Some(line) = line {
         return under_line(machine, pipeline, line as u32);
@@ -32,7 +32,7 @@ pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Opt
     Ok(FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..measured })
 }
 
-/// Returns the first, the assumed and the last possible line of the photodiode.
+/// Returns three possible lines of the photodiode: the first, the assumed and the last.
 fn photodiode_lines() -> [u32; 3] {
     let assumed = PendulumRig::assumed().photodiode_line;
     let table = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE);
@@ -54,13 +54,12 @@ fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) ->
     Ok(FigureValue::with(mean_s * 1e3, details))
 }
 
-/// Number of seeds of figure 18's motion.
+/// Number of seeds of the head motion in figure 18.
 const SEEDS: u64 = 4;
-/// Length of figure 18's motion in seconds.
+/// Duration of the head motion in figure 18, in seconds.
 const SECONDS: u64 = 120;
 
-/// Measures figure 18. The error is almost only the error of a rotation; the position adds little for a point 1 m
-/// ahead.
+/// Measures figure 18. Almost all of the error comes from rotation. The position adds little for a point 1 m ahead.
 pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
@@ -71,10 +70,10 @@ pub(super) fn ratio_of_errors() -> FigureValue {
     FigureValue::with(mean, vec![detail("least", min, ""), detail("greatest", max, "")])
 }
 
-/// Number of fields of figure 19's runs: ten seconds.
+/// Number of display fields in the runs for figure 19: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of the stages that the paper adds. The stages that the paper leaves out
+/// Measures figures 19 and 19b: the sum of the latency stages that the paper adds. The stages that the paper leaves out
 /// appear as details.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,

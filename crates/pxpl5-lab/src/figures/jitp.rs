@@ -1,5 +1,5 @@
-//! Figures of just-in-time pixels (Mine and Bishop): errors under a turning head, the duration of a line, the number
-//! of transforms, and the pictures of an edge.
+//! Figures of just-in-time pixels (Mine and Bishop). They concern errors while the head turns, the duration of a line,
+//! the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -23,20 +23,20 @@ only the instants of drawing and of light differ. The error of a pixel is the an
 what the pixel shows, and the other is what the pixel should show when it lights. Pixels are those of the paper, with 600 pixels \
 over 60 degrees. Like the paper, the model scales each angle from the lit pixels to the whole field or line, including the retrace.";
 
-/// Rate of a fast turn of the head in degrees a second (JITP).
+/// Rate of a fast turn of the head in degrees per second (JITP).
 const PAN: f64 = 200.0;
 
-/// Pixels per degree of the paper's view.
+/// Horizontal resolution of the paper's picture in pixels per degree.
 const PX_PER_DEG: f64 = 10.0;
 
-/// Field that is evaluated: well after the start, and even.
+/// Number of the field that is evaluated. It is even, and long after the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Column of the 640 x 480 picture that is evaluated.
+/// Number of the evaluated column in the 640 x 480 picture.
 const COLUMN: u32 = 320;
-/// Line in the middle of the 640 x 480 picture.
+/// Number of the middle line in the 640 x 480 picture.
 const MIDDLE_LINE: u32 = 240;
-/// Last line of an even field in the 640 x 480 picture.
+/// Number of the last line of an even field in the 640 x 480 picture.
 const LAST_LINE: u32 = 478;
 
 pub(super) fn measurements() -> Vec<Measurement> {
@@ -94,14 +94,14 @@ fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> R
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 
-/// Returns the error at a pixel in degrees.
+/// Returns the error of position at a pixel in degrees.
 fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
     let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
     let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));
     Ok(shown.ok_or_else(nothing)?.degrees)
 }
 
-/// Returns the seconds between the beam's passes over two pixels of a field.
+/// Returns the time in seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
     let display = outcome.record().display();
     let at_s = |(x, y)| display.lights(0, x, y, FIELD).map_or(f64::NAN, |at| at.0 as f64 / 1e12);
@@ -112,8 +112,8 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
     Ok((angle.value * PX_PER_DEG).into())
 }
 
-/// Measures J1: the rotation from the first pixel of a field to its last line, scaled to the time from one retrace to
-/// the next.
+/// Measures figure J1: the head's rotation while the beam draws a field. The rotation is measured from the first pixel
+/// to the last line, and scaled to the time between two retraces.
 fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
@@ -130,7 +130,8 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
-/// Measures J2: the rotation from the left end of a line to its right end, scaled to the whole line.
+/// Measures figure J2: the head's rotation while the beam draws a line. The rotation is measured between two pixels,
+/// and scaled to the full width of the line.
 fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
@@ -141,13 +142,13 @@ fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((ends_deg / active_s * line_s).into())
 }
 
-/// Measures J3: the time between two lines of a field, which are two lines apart in the frame.
+/// Measures figure J3: the time between two successive lines of a field. These lines are two lines apart in the frame.
 fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
-/// Measures J4: the slant of an edge in a conventional picture and in one of just-in-time pixels.
+/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in one of just-in-time pixels.
 fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
@@ -156,8 +157,8 @@ fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(100.0 * (1.0 - (just_in_time / conventional).abs()), details))
 }
 
-/// Returns the slant of the straight line through the right ends of the white pixels, in pixels from the first row to
-/// the last.
+/// Returns the slant of an edge in pixels, from the first row to the last. A straight line is fitted through the right
+/// ends of the white pixels.
 fn slant(picture: &RgbImage) -> f64 {
     let end = |row| (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100).map_or(0, |x| x + 1);
     let rows = f64::from(picture.height());
@@ -170,7 +171,8 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// Measures J5: the transforms counted in [`COUNTED`] fields after a start that both runs share.
+/// Measures figure J5: the number of vertex transforms in [`COUNTED`] fields. The start, which is the same in both
+/// runs, is subtracted.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
@@ -191,7 +193,7 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
 /// Number of fields over which transforms are counted.
 const COUNTED: u64 = 20;
 
-/// Returns a machine with one slave, whose software costs no time.
+/// Returns a machine with one slave, whose software takes no time.
 fn free_slave(bench: &Bench) -> Result<MachineConfig> {
     let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {

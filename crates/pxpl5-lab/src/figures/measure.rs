@@ -22,18 +22,18 @@ use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
-/// Settings under which all figures are measured: a level of modelling, and changes to the machine's parameters.
+/// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
 pub struct Bench {
     /// Level of modelling at which every figure is measured.
     pub level: Level,
-    /// Parameters, by path, that differ from the presets. A path that begins with a preset's name and a colon changes
-    /// only that preset. Times of PPHIGS code do not change the machines that run Slats. [`PHOTODIODE_LINE`] is a
-    /// parameter of the rig.
+    /// Parameters, by path, that differ from the presets, with their values. A path that begins with a preset's name
+    /// and a colon changes only that preset. Times of PPHIGS code do not change the machines that run Slats.
+    /// [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
-    /// Number of seeds of the head motion of figure 7.
+    /// Number of seeds of the head motion in the experiment of figure 7.
     pub seeds: u64,
-    /// Number of evaluated frames of figure 7, for each seed.
+    /// Number of evaluated frames for each seed in the experiment of figure 7.
     pub frames: u64,
     /// Interpretation of the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
@@ -355,7 +355,8 @@ impl Bench {
     }
 }
 
-/// Measures figure 8: the bin entries of one pass over each scene, from views along the scene's own head motion.
+/// Measures figure 8: the number of bin entries of one pass over each scene. The scene is seen from poses along its own
+/// head motion.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -365,7 +366,7 @@ fn regions_touched() -> Result<FigureValue> {
     Ok(FigureValue::with(value, details))
 }
 
-/// Returns the bin entries per visible triangle, over both eyes and a number of views.
+/// Returns the number of bin entries per visible triangle, over both eyes and a number of head poses.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
@@ -399,7 +400,7 @@ fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
 
-/// Returns the mean as the figure's value, with deviation, minimum and maximum as details.
+/// Returns a figure's value: the mean, with standard deviation, minimum and maximum as details.
 fn spread_ms(statistics: Statistics) -> FigureValue {
     let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
@@ -414,14 +415,14 @@ mod tests {
     use pxpl5_run::TestScene;
     use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
-    /// Expected number of regions that a right-angled triangle touches. Both legs are parallel to the region borders,
-    /// and the corners are spread evenly over `TYPICAL_SPREAD_PX`.
+    /// Returns the expected number of regions that a right-angled triangle touches. Both legs are parallel to the
+    /// region borders, and the corners are spread evenly over `TYPICAL_SPREAD_PX`.
     ///
     /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
     /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
-    /// columns of regions, and three the four rows. The triangle's box touches on average
-    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach the far corner of the
-    /// box. This removes half of the cases in which a point where four regions meet lies in the box.
+    /// columns of regions, and three the four rows. The triangle's bounding box touches on average `(1 + 4 (leg - 1) /
+    /// width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the box. Some boxes contain
+    /// a point where four regions meet. In half of these cases the triangle therefore touches one region less.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;

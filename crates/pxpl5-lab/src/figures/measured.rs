@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// An additional number of a figure's experiment.
+/// An additional number that a figure's experiment yields.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Detail {
-    /// Name of the number in a few words, such as `standard deviation`.
+    /// Name of the number, in a few words, such as `standard deviation`.
     pub name: String,
     /// The number, in [`Detail::unit`].
     pub value: f64,
@@ -25,13 +25,13 @@ pub struct FigureValue {
     pub value: f64,
     /// Additional numbers of the same experiment, each with its own unit.
     pub details: Vec<Detail>,
-    /// Minimum and maximum over a condition of the experiment that the paper does not print. `None` if the paper
-    /// prints all conditions.
+    /// Minimum and maximum of the figure over a condition of the experiment that the paper does not print. `None` if
+    /// the paper prints all conditions.
     pub unprinted: Option<[f64; 2]>,
 }
 
 impl FigureValue {
-    /// Returns a result with additional numbers of the same experiment.
+    /// Returns a figure's value, together with additional numbers of the same experiment.
     pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
         Self { value, details, unprinted: None }
     }

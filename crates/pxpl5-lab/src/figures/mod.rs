@@ -4,13 +4,13 @@
 //!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
 //! ```
 //!
-//! Papers about other systems are families of rows ([`FigureFamily`]), measured together with the figures of
+//! Papers about other systems have separate families of rows ([`FigureFamily`]), measured together with the figures of
 //! Pixel-Planes 5.
 //!
-//! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than
-//! the presets. Their experiments change only the parameters that the paper's statement changes.
+//! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than the
+//! presets. Their experiments change only the parameters that the paper's statement changes.
 //!
-//! Sources: TR94, I3D95. The loads of the experiments are chosen here.
+//! Sources: TR94, I3D95. The loads of the experiments are chosen by this project.
 
 mod applications;
 mod document;
@@ -46,7 +46,7 @@ use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
-/// Error of a figure whose experiment has no result.
+/// Error of a figure whose experiment yields no result.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("figure {id}: {reason}")]
 pub struct FigureError {
@@ -56,28 +56,28 @@ pub struct FigureError {
     pub reason: String,
 }
 
-/// All figures with the model's values, their intervals, and further comparisons.
+/// All published figures with the model's values and intervals, and further comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Rows of the main table, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
-    /// Rows of the main table with the times of executed i860 code, without intervals.
+    /// Rows of the main table, measured with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
-    /// Effects of the open parameters on each figure except the ones that depend only on scenes.
+    /// Effects of the unpublished parameters on each figure. Figures that depend only on scenes are left out.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
     /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
-    /// Figures of Rendering Control under all interpretations, at the analytic level.
+    /// Fit of the Rendering Control figures under all interpretations of the papers, at the analytic level.
     pub readings: Readings,
     /// Latencies of the fly-throughs for several times of the host's application, at the analytic level.
     pub application_times: Vec<ApplicationTime>,
 }
 
-/// Number of seeds of the application scenes in the ranking of interpretations.
+/// Number of seeds for each application scene, when interpretations of the papers are ranked.
 const SEEDS: u64 = 6;
-/// Number of frames of each seed in the ranking of interpretations.
+/// Number of frames for each seed, when interpretations of the papers are ranked.
 const FRAMES: u64 = 150;
 
 /// Measures all figures in parallel, with their intervals.
@@ -149,7 +149,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
 }
 
-/// Measures a figure with a bench and returns its row.
+/// Measures one figure under common settings (`bench`) and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
         Ok(measured) => Ok(FigureRow::new(figure, measured)),

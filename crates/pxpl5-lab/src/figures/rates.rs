@@ -1,5 +1,5 @@
-//! Published peak rates: triangles of the machine, a renderer and a processor, operations of the i860, and the total
-//! latency of the rig.
+//! Published peak rates: triangles per second of the machine, a renderer and a processor, and operations of the i860.
+//! The total latency of the rig is included.
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
@@ -21,7 +21,7 @@ more tuning, and he stated neither the size of the machine nor the size of the t
 The intervals set one parameter at a time to both ends of its range. The varied parameters are the depth of the renderers' FIFO, the channels \
 of a sender, and the channels for messages to FIFOs. The times of a triangle on a processor and on a renderer also vary. All runs use events.";
 
-/// Parameters that limit the rate of triangles of the machine and that no source gives.
+/// Parameters that limit the machine's triangle rate and that no source gives.
 const OF_TRIANGLES: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
@@ -31,7 +31,7 @@ const OF_TRIANGLES: &[&str] = &[
     "renderer.phong_triangle_clocks",
 ];
 
-/// Parameters that limit the rate of a single renderer.
+/// Parameters that limit the triangle rate of a single renderer.
 const OF_RENDERER: &[&str] =
     &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
 
@@ -147,10 +147,10 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Number of triangles of a frame.
+/// Number of triangles in a frame of these experiments.
 const TRIANGLES: u64 = 40_000;
 
-/// Number of fields of a run, enough for 15 to 20 frames.
+/// Number of display fields in a run, enough for 15 to 20 frames.
 const FIELDS: u64 = 44;
 
 fn drawn(machine: MachineConfig, shading: Shading, triangles: u64, fields: u64) -> Result<Outcome> {
@@ -164,8 +164,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Measures the commands of a renderer per second of work of its array. Of the 26,000 commands of a frame, 80 are not
-/// triangles.
+/// Measures the number of commands that a renderer executes per second in which its pixel array works. Of the 26,000
+/// commands of a frame, all but 80 are triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -177,7 +177,7 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Measures the triangles of a share per second of TRANSFORM. The first frame is left out.
+/// Measures the number of triangles that a processor transforms per second of TRANSFORM. The first frame is left out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
@@ -209,7 +209,7 @@ const TURNS: u32 = 100;
 /// Number of multiply-adds in an iteration of the i860 loop.
 const MULTIPLY_ADDS: usize = 256;
 
-/// Measures the floating-point operations of the i860 in millions per second, at 40 MHz.
+/// Measures the floating-point operations of the i860 in millions per second, at a clock of 40 MHz.
 fn i860_peak() -> Result<FigureValue> {
     let failed = |reason: String| ExperimentError::Scene(format!("the peak of the i860: {reason}"));
     let body = "m12apm.ss f8, f9, f0\n".repeat(MULTIPLY_ADDS);
@@ -235,5 +235,5 @@ fn i860_peak() -> Result<FigureValue> {
     Ok((operations / clocks as f64 * 40.0).into())
 }
 
-/// Address of the program.
+/// Memory address of the measured program.
 const CODE: u32 = 0x1000;

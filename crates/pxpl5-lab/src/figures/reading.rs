@@ -1,50 +1,51 @@
-//! Interpretations of the questions that the papers leave open about Rendering Control.
+//! Interpretations of the papers: answers to the questions about Rendering Control that the papers leave open.
 
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use serde::Serialize;
 
-/// Definition of the samples that a published mean latency averages.
+/// Definition of the latency samples whose mean a paper prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Samples {
-    /// One sample for each frame, from the start of TRANSFORM of its first eye.
+    /// Each frame gives one sample, timed from the start of TRANSFORM of its first eye.
     FirstEye,
-    /// One sample for each eye of a frame, from the start of that eye's TRANSFORM.
+    /// Each eye of a frame gives one sample, timed from the start of TRANSFORM of this eye.
     EachEye,
 }
 
-/// Definition of a published latency in fields.
+/// Definition of the unit "field" in a published latency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FieldCount {
-    /// A time, in fields of 1001/60000 s.
+    /// The duration of the latency divided by 1001/60000 s.
     Exact,
-    /// The number of retraces, including the one of the swap.
+    /// The number of retraces during the latency, including the retrace of the swap.
     Whole,
 }
 
-/// An interpretation: one answer to each question that the papers leave open about the figures of Rendering Control.
+/// An interpretation of the papers: one answer to each question that they leave open about the figures of Rendering
+/// Control.
 ///
-/// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with
-/// one interpretation. None is chosen for a single figure.
+/// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with the
+/// same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
-    /// Definition of the samples of a mean latency.
+    /// Definition of the latency samples whose mean a paper prints.
     pub samples: Samples,
-    /// Definition of a latency printed in fields.
+    /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,
     /// Number of finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
     pub kept: u64,
-    /// The master's rule for a renderer whose region is finished while the frame buffer is not available.
+    /// The master's rule for a renderer that has finished its region while the frame buffer is not available.
     #[serde(serialize_with = "by_name")]
     pub finished: FinishedRegions,
     /// Preset of the machine that drew the application scenes.
     pub machine: &'static str,
-    /// True if the application scenes were drawn without their back faces.
+    /// True if the back faces of the application scenes were removed before drawing.
     pub culled: bool,
-    /// Number of eyes, 1 or 2, whose entries fill the bins when 7,700 triangles are drawn (`gp.bin_bytes`).
+    /// Number of eyes (1 or 2) whose entries fill the bins when 7,700 triangles are drawn (`gp.bin_bytes`).
     pub bins: u64,
 }
 
@@ -52,13 +53,13 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
     serializer.serialize_str(finished.name())
 }
 
-/// Number of regions that fit in a renderer's backing store: 4,096 bits a pixel, of which the colours of a region take
-/// a block of 32.
+/// Number of regions that fit in a renderer's backing store. The store has 4,096 bits per pixel, and the colours of a
+/// region take 32 of these bits.
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Reading {
-    /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
-    /// and no text contradicts it.
+    /// The interpretation with which figures are measured. `pxpl5 readings` ranks it among the best, and no text
+    /// contradicts it.
     pub const USUAL: Self = Self {
         samples: Samples::EachEye,
         fields: FieldCount::Whole,
@@ -69,17 +70,17 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules of TR94 alone, on a machine that never delays them. The theory behind figures 3 and 5 rests on this
+    /// The rules of TR94 alone, on a machine where nothing delays them. The theory behind figures 3 and 5 assumes this
     /// interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// Returns the interpretations that differ in the answer to one question.
+    /// Returns the interpretations that differ from the usual one in the answer to exactly one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
     }
 
-    /// Returns every combination of answers.
+    /// Returns all interpretations: every combination of answers.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
@@ -92,7 +93,7 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Returns the answers in words, in the order of the questions.
+    /// Returns the answers of the interpretation in words, in the order of the questions.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
@@ -114,17 +115,17 @@ impl Reading {
         self.answers().iter().zip(&other.answers()).filter(|(mine, others)| mine != others).count()
     }
 
-    /// Returns the pipeline under this interpretation.
+    /// Returns the pipeline Rendering Control with the rules of this interpretation.
     #[must_use]
     pub const fn pipeline(&self) -> RenderingControl {
         RenderingControl { finished: self.finished, ..RenderingControl::stereo() }
     }
 
-    /// Returns a machine for Rendering Control under this interpretation.
+    /// Adapts a machine for Rendering Control to this interpretation.
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] for a number of regions beyond the parameter's limits.
+    /// Returns [`ConfigError`] if the number of kept regions is outside the parameter's limits.
     pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, ConfigError> {
         if self.kept != Self::USUAL.kept {
             machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
@@ -135,7 +136,7 @@ impl Reading {
         Ok(machine)
     }
 
-    /// Returns the samples of the latency to the swap, in milliseconds.
+    /// Returns the latency samples of this interpretation, up to the swap, in milliseconds.
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
@@ -144,7 +145,7 @@ impl Reading {
         }
     }
 
-    /// Converts a latency in milliseconds to fields.
+    /// Converts a latency in milliseconds to fields, as this interpretation defines them.
     #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
         match self.fields {
@@ -157,10 +158,10 @@ impl Reading {
 /// Presets of machines that could have drawn the application scenes.
 const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 
-/// Numbers of regions that a renderer may keep. The last one fills the backing store.
+/// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns each interpretation with each answer to one question.
+/// Returns copies of each interpretation, one for each possible answer to one question.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

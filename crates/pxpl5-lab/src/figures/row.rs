@@ -11,23 +11,24 @@ pub struct FigureRow {
     pub id: &'static str,
     /// Value printed in the paper, in `unit`.
     pub published: f64,
-    /// Value of the model in `unit`, at the level of the bench.
+    /// Value of the model in `unit`, at the level of modelling that was chosen for all figures.
     pub simulated: f64,
     /// Unit of the published and the simulated value.
     pub unit: &'static str,
     /// Relative error in percent: (simulated - published) / published.
     pub error_percent: f64,
-    /// Value at the analytic level with the presets' numbers. Its distance from `simulated` is the error of that
-    /// level. `None` if no parameter was varied.
+    /// Value of the model at the analytic level with the presets' parameters. Its distance from `simulated` is the
+    /// error of the analytic level. `None` if no parameter was varied.
     pub analytic: Option<f64>,
-    /// Minimum and maximum while unpublished parameters vary within their ranges, computed at the analytic level.
+    /// Minimum and maximum of the figure while unpublished parameters vary within their ranges, at the analytic level.
     /// `None` if no parameter was varied, because the figure depends only on scenes.
     pub interval: Option<[f64; 2]>,
-    /// Provenance of the row: `free`, `fitted` or `rule`.
+    /// Provenance of the row. `free`: nothing was fitted to the figure. `fitted`: a parameter was fitted. `rule`: a
+    /// rule was chosen.
     pub standing: &'static str,
-    /// Half of the printed range, in `unit`. `None` if the paper prints no range.
+    /// Half the width of the range that the paper prints, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
-    /// Fitted parameter or chosen rule. Empty for a free check.
+    /// Parameter that was fitted to the figure, or rule that was chosen for it. Empty if nothing was fitted or chosen.
     pub fitted: &'static str,
     /// Short name of the paper and the topic within the paper.
     pub source: String,
@@ -35,19 +36,19 @@ pub struct FigureRow {
     pub statement: &'static str,
     /// Simulated experiment: machine, pipeline and scene.
     pub experiment: &'static str,
-    /// Known cause of a miss. Empty if the cause is unknown.
+    /// Known cause of a difference between model and paper. Empty if the cause is unknown.
     pub cause: &'static str,
     /// Additional numbers of the same experiment.
     pub details: Vec<Detail>,
-    /// Minimum and maximum over a condition of the experiment that the paper does not print. `simulated` is the value
-    /// for the assumed condition. `None` if the paper prints all conditions.
+    /// Minimum and maximum of the figure over a condition of the experiment that the paper does not print. `simulated`
+    /// is the value for the assumed condition. `None` if the paper prints all conditions.
     pub unprinted: Option<[f64; 2]>,
 }
 
-/// Relative difference in percent above which a figure is missed, if the paper prints no range.
+/// Relative difference in percent above which the model misses a figure, if the paper prints no range.
 pub const MISS_PERCENT: f64 = 3.0;
 
-/// Relative rounding error of printed numbers: papers print three digits.
+/// Relative rounding error of printed numbers, because papers print three digits.
 const ROUNDING: f64 = 0.01;
 
 impl FigureRow {
@@ -80,12 +81,13 @@ impl FigureRow {
         }
     }
 
-    /// Returns true if no values of the open parameters within their ranges reproduce the figure. Such a figure shows
-    /// an error of the model's rules.
+    /// Returns true if the figure lies outside the values that the model can reach. The unpublished parameters can then
+    /// explain the difference nowhere in their ranges, so a rule of the model is wrong.
     ///
-    /// The interval comes from the analytic level. It is widened on both sides by the distance between `analytic` and
-    /// `simulated`: the levels may differ as much at the ends of the ranges as at the presets. The published value is
-    /// met within its printed range, or within its last digit if no range is printed.
+    /// The reachable values are the interval of the analytic level, extended on both sides. The extension is the
+    /// distance between `analytic` and `simulated`, because the two levels may differ as much at the ends of the ranges
+    /// as at the presets. The published value is compared with its printed range, or with its last digit if no range is
+    /// printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
@@ -96,9 +98,9 @@ impl FigureRow {
         self.published + slack < low || self.published - slack > high
     }
 
-    /// Returns true if the model lies outside the printed range. If no range is printed, an error of more than
-    /// [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed only if no value of
-    /// the condition reproduces it.
+    /// Returns true if the model misses the figure: its value lies outside the printed range. If no range is printed,
+    /// an error of more than [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed
+    /// only if no value of this condition reproduces the figure.
     #[must_use]
     pub fn misses(&self) -> bool {
         // A tiny margin absorbs rounding in floating-point arithmetic.
@@ -108,7 +110,8 @@ impl FigureRow {
     }
 }
 
-/// Returns the mean absolute error in percent over all free checks. A figure without a value counts 100 %.
+/// Returns the mean absolute error in percent over all rows to which nothing was fitted. A figure without a value
+/// counts 100 %.
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
@@ -121,7 +124,7 @@ mod tests {
     use super::*;
     use crate::figures::FIGURES;
 
-    /// Row of figure 17, published as 54 to 57 ms.
+    /// Returns the row of figure 17, published as 54 to 57 ms.
     fn row_of_figure_17(value: f64, unprinted: Option<[f64; 2]>) -> FigureRow {
         let figure = FIGURES.iter().find(|figure| figure.id == "17").expect("listed");
         FigureRow::new(figure, FigureValue { unprinted, ..FigureValue::from(value) })

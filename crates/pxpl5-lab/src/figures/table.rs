@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// Relation between a figure and the choices made in the model.
+/// Relation between a published figure and the choices made in the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
@@ -10,12 +10,12 @@ pub enum Basis {
     Free,
     /// A parameter was fitted to this figure, or derived from it.
     Fitted {
-        /// Path of the parameter, and the preset that holds the fitted value.
+        /// Path of the fitted parameter, and the preset that holds its value.
         parameter: &'static str,
     },
     /// A rule of the model was chosen because of this figure.
     Rule {
-        /// Description of the rule in a few words.
+        /// Description of the chosen rule in a few words.
         rule: &'static str,
     },
 }
@@ -23,11 +23,11 @@ pub enum Basis {
 /// A figure printed in a paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Number in the specification, with a letter if a statement holds several numbers.
+    /// Number of the figure in the specification, with a letter if one statement holds several numbers.
     pub id: &'static str,
     /// Short name of the paper.
     pub paper: &'static str,
-    /// Part of the paper, by topic.
+    /// Topic of the part of the paper that prints the figure.
     pub section: &'static str,
     /// Statement of the paper in a few words.
     pub statement: &'static str,
@@ -35,14 +35,14 @@ pub struct Figure {
     pub value: f64,
     /// Unit of the printed value.
     pub unit: &'static str,
-    /// Half of the range that the paper prints, or implies by words like "about" and "1 to 2". `None` if the paper
-    /// gives no range.
+    /// Half the width of the range that the paper prints, or implies by words like "about" and "1 to 2". `None` if the
+    /// paper gives no range.
     pub spread: Option<f64>,
     /// Experiment that simulates the figure.
     pub experiment: &'static str,
     /// Relation between the figure and the choices made in the model.
     pub basis: Basis,
-    /// Known cause of a miss. Empty if the model reproduces the figure.
+    /// Known cause of a difference between model and paper. Empty if the model reproduces the figure.
     pub cause: &'static str,
 }
 
@@ -51,7 +51,7 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Returns a figure that the model does not miss.
+/// Returns a figure that the model reproduces.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),
@@ -298,6 +298,6 @@ pub const FIGURES: [Figure; 26] = [
     ),
 ];
 
-/// Figures without a closed form: a property of the scenes, and figures that need a tracker or a motion. Their
-/// experiments are simulated with events at every level, and no parameter is varied.
+/// Figures without a closed-form formula: a property of the scenes, and figures that need a tracker or a motion. Their
+/// experiments are simulated with events at every level of modelling, and no parameter is varied.
 pub const WITHOUT_CLOSED_FORM: [&str; 5] = ["8", "17", "18", "19", "19b"];

@@ -1,4 +1,4 @@
-//! The topics of figure groups.
+//! The topics by which published figures are grouped.
 
 use super::group::Topic;
 use super::{Bench, FigureError, FigureGroup, jitp, rates, trackers};

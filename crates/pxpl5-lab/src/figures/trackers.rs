@@ -1,4 +1,4 @@
-//! Figures of trackers and the host's serial line.
+//! Figures of trackers and of the host's serial line.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -49,9 +49,9 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
     TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Number of seeds of the kernel's phase.
+/// Number of seeds, each of which gives another phase to the host's kernel timer.
 const SEEDS: u64 = 200;
-/// Number of reports for each seed.
+/// Number of tracker reports for each seed.
 const REPORTS: usize = 240;
 
 fn polling(bench: &Bench) -> Result<FigureValue> {
@@ -77,10 +77,10 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(greatest, details))
 }
 
-/// Number of fields of a run: ten seconds.
+/// Number of display fields in a run: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Returns the mean time in ms from the head's pose to the start of TRANSFORM of its picture.
+/// Returns the mean time in ms from the head's pose until TRANSFORM of its picture starts.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -91,10 +91,12 @@ fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     Ok(tracking_ms + waiting_ms + sending_ms)
 }
 
-/// Rate of the turn in degrees a second. The rate is low, so that a quarter of a second of delay is half a degree.
+/// Rate of the head's turn in degrees per second. The rate is low, so that a delay of a quarter of a second is half a
+/// degree.
 const SLOW: f64 = 2.0;
 
-/// Measures the delay in ms of the Fastrak's reported orientation behind a steady turn, for a filter gain.
+/// Measures the delay in ms of the orientation that the Fastrak reports, behind a steady turn of the head. `gain` is
+/// the gain of the tracker's filter.
 fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;

@@ -10,8 +10,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Levels that are compared. The second value is true if the table's times of primitives come from executed code,
-/// instead of published or fitted values. The cycle level uses no time of the table, so it occurs once.
+/// Levels of modelling to compare. The second value is true if the primitive times in the timing table come from
+/// executed code, instead of published or fitted values. The cycle level does not use the table, so it occurs once.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),
@@ -20,21 +20,22 @@ const VARIANTS: [(Level, bool); 5] = [
     (Level::Cycle, true),
 ];
 
-/// Choices of pixels whose speed is measured. The analytic level has no pixels.
+/// Choices of computed pixels for which the speed is measured. The analytic level has no pixels.
 const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
-/// Number of seeds and number of frames of the Mig. Few suffice, because the comparison concerns the levels.
+/// Number of seeds and number of frames of the test scene "mig". Small numbers suffice, because only the levels are
+/// compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured, one after the other, so that nothing else runs at the same time.
+/// Number of experiments whose speed is measured. They run one after the other, with nothing else at the same time.
 const TIMED: u64 = 16;
 
-/// Parameters of a comparison of levels.
+/// Parameters of a comparison of levels of modelling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LevelQuery {
-    /// Number of random experiments for the error against the cycle level.
+    /// Number of random experiments for which each level is compared with the cycle level.
     pub experiments: u64,
-    /// True to measure speeds as well. Speeds are meaningful only on an otherwise idle computer.
+    /// True if simulation speeds are measured as well. They are meaningful only on an otherwise idle computer.
     pub speeds: bool,
 }
 
@@ -91,7 +92,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     })
 }
 
-/// Returns a random experiment for a variant.
+/// Returns the random experiment with the given number, at one of the compared levels.
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
     let experiment = experiment(number)?.level(level);
     if !times_of_code || level == Level::Cycle {
@@ -102,7 +103,7 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
 }
 
-/// Returns the quantity that is compared between levels. The value is NaN if no picture is shown.
+/// Returns the quantity that is compared between levels, in milliseconds. The value is NaN if no picture is shown.
 fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     let experiment = of_variant(variant, number)?;
     match summarise(&crate::registry(), &experiment) {
@@ -112,7 +113,7 @@ fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     }
 }
 
-/// Measures all figures with a variant.
+/// Measures all published figures at one of the compared levels.
 fn rows_of(
     (level, times_of_code): (Level, bool),
     step: &(impl Fn() + Sync),
@@ -127,7 +128,7 @@ fn rows_of(
     parallel::map(&FIGURES, row).into_iter().collect()
 }
 
-/// Measures the speed for each choice of pixels.
+/// Measures the simulation speed of a level for each choice of computed pixels.
 fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
     let speed = |pixels: &Pixels| {
@@ -137,7 +138,7 @@ fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, Exp
     choices.iter().map(speed).collect()
 }
 
-/// Returns the simulated seconds per second of the host, over all timed experiments.
+/// Returns the simulated seconds per second of the host's time, over all timed experiments.
 fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! The levels of modelling behind one interface, and their comparison by speed and error.
+//! The levels of modelling behind a common interface, and their comparison by speed and error.
 
 mod compare;
 mod random;
@@ -15,8 +15,8 @@ use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 ///
 /// # Errors
 ///
-/// Fails in the same cases as [`Experiment::run`]. At the analytic level fails with the error of the closed form, or
-/// with [`ExperimentError::Level`] if there is none.
+/// Fails in the same cases as [`Experiment::run`]. At the analytic level, returns the error of the pipeline's closed
+/// form, or [`ExperimentError::Level`] if the pipeline has none.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if experiment.modelling_level() != Level::Analytic {
         return Ok(summary(&experiment.run()?));
@@ -28,9 +28,11 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
     }
 }
 
-/// Returns the deviation of a figure from its value at the cycle level, in percent. The deviation is 0 if neither
-/// level has a value, because pictures that are never in time have no latency, or if both values are 0. The deviation
-/// is 100 if only one level has a value, or if only the cycle level's value is 0.
+/// Returns the deviation of a value from the same quantity at the cycle level, in percent.
+///
+/// - The deviation is 0 if neither level has a value, because pictures that are never in time have no latency.
+/// - The deviation is 0 if both values are 0.
+/// - The deviation is 100 if only one level has a value, or if only the value of the cycle level is 0.
 #[must_use]
 pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
     match (value.is_finite(), of_cycle.is_finite()) {

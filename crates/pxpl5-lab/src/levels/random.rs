@@ -1,8 +1,8 @@
-//! Random experiments within the range that all levels of modelling support.
+//! Random experiments that every level of modelling supports.
 //!
 //! The experiments run Rendering Control and Slats on NTSC displays without a tracker. Their machines and scenes are
-//! small enough for the cycle level. Parameters lie anywhere in the ranges of their sources. Each experiment follows
-//! from its number.
+//! small enough for the cycle level. Parameters lie anywhere in the ranges of their sources. The number of an
+//! experiment determines all of its settings.
 
 use crate::limit::test_scene;
 use pphigs::RegionBinning;
@@ -11,7 +11,7 @@ use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Slats, Su
 use pxpl5_scene::{Scene, builtin};
 use std::sync::Arc;
 
-/// SplitMix64, a pseudo-random number generator.
+/// A pseudo-random number generator (SplitMix64).
 struct Dice(u64);
 
 impl Dice {
@@ -31,11 +31,12 @@ impl Dice {
     }
 }
 
-/// Numbers of fields of a run: for Rendering Control a dozen frames at 20 Hz after the warm-up, for Slats some
-/// fields.
+/// Numbers of display fields in a run. Rendering Control (first) shows a dozen frames at 20 Hz after the warm-up, Slats
+/// (second) some fields.
 const FIELDS: (u64, u64) = (48, 14);
 
-/// Returns the experiment of a number, without pixels. Even numbers run Rendering Control, odd numbers Slats.
+/// Returns the random experiment with the given number, without pixels. Even numbers run Rendering Control, odd numbers
+/// run Slats.
 ///
 /// # Errors
 ///
@@ -73,8 +74,8 @@ fn slats(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
     Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))
 }
 
-/// Returns a preset with random numbers of boards, and random ring and FIFO parameters within the ranges of their
-/// sources. Two channels remain for copies, as the analytic level requires.
+/// Changes a preset at random: its numbers of boards, and ring and FIFO parameters within the ranges of their sources.
+/// Two ring channels remain for copies, as the analytic level requires.
 fn machine(preset: &str, dice: &mut Dice, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
     let mut machine = MachineConfig::preset(preset)?;
     machine.n_gps = dice.between(gps.0, gps.1) as usize;
@@ -87,9 +88,9 @@ fn machine(preset: &str, dice: &mut Dice, gps: (u64, u64)) -> Result<MachineConf
     Ok(machine)
 }
 
-/// Returns the quantity that is compared between levels, in milliseconds. For Rendering Control the quantity is the
-/// mean latency. Slats always has a latency of one field, so its quantity is the time from the beginning of a field
-/// to its first copy. The value is NaN if no picture was shown in time.
+/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control it is the mean
+/// latency. Slats always has a latency of one field, so its quantity is the time from the beginning of a field to the
+/// first copy. The value is NaN if no picture was shown in time.
 #[must_use]
 pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
     if summary.latencies_ms.is_empty() {
@@ -113,8 +114,8 @@ mod tests {
         }
     }
 
-    /// Compares the analytic with the transaction level for the same table of times. Nine of ten deviations out of 40
-    /// are below 10 %.
+    /// Compares the analytic level with the transaction level for the same timing table. Of 40 deviations, 90 % are
+    /// below 10 %.
     #[test]
     fn the_analytic_level_is_near_the_transaction_level() {
         let registry = crate::registry();

@@ -1,4 +1,4 @@
-//! The recorded measurement of the levels of modelling, as a file.
+//! A measurement of all levels of modelling (speed and error), stored in a file.
 
 use pxpl5_run::{Level, Pixels};
 use serde::{Deserialize, Serialize};
@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 /// Name and version of the record's JSON layout.
 pub const SCHEMA: &str = "pxpl5-levels/2";
 
-/// Measurement of all levels, with date and host. Missing values are null.
+/// Measurement of all levels of modelling, with date and host. Missing values are null.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
     /// Name and version of the JSON layout.
     pub schema: String,
-    /// Number of random experiments behind each [`LevelReport::from_cycle_percent`].
+    /// Number of random experiments from which each [`LevelReport::from_cycle_percent`] is computed.
     pub experiments: u64,
     /// Remarks for the reader, such as missing values.
     pub note: Option<String>,
@@ -19,36 +19,37 @@ pub struct LevelRecord {
     pub date: Option<String>,
     /// Host on which the levels were measured.
     pub host: Option<String>,
-    /// Reports of the levels. A level that uses the timing table has two reports, one for each source of its times.
+    /// Reports of the levels of modelling. A level that uses the timing table has two reports, one for each source of
+    /// the table's times.
     pub levels: Vec<LevelReport>,
 }
 
-/// Errors and speeds of a level.
+/// Errors and speeds of one level of modelling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelReport {
-    /// Level that was measured.
+    /// Level of modelling that was measured.
     pub level: Level,
-    /// True if the table's times of primitives come from executed code, instead of published or fitted values.
+    /// True if the primitive times in the timing table come from executed code, instead of published or fitted values.
     pub times_of_code: bool,
-    /// Mean absolute error of the free checks, in percent.
+    /// Mean absolute error in percent over the published figures to which nothing was fitted.
     pub published_error_percent: Option<f64>,
-    /// Absolute deviations of random experiments from the cycle level, in percent.
+    /// Absolute deviations of this level from the cycle level, in percent, over random experiments.
     pub from_cycle_percent: Option<Spread>,
-    /// Speeds for each choice of pixels. Pixels do not change simulated times.
+    /// Simulation speeds for each choice of pixels. The choice of pixels does not change simulated times.
     pub speeds: Vec<LevelSpeed>,
 }
 
-/// Speed of a level for one choice of pixels.
+/// Simulation speed of a level of modelling for one choice of pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelSpeed {
-    /// Pixels that are computed.
+    /// Choice of the pixels that are computed.
     pub pixels: Pixels,
-    /// Simulated seconds per second of one thread of the host. Pixels are computed by as many further threads as the
-    /// host has.
+    /// Simulated seconds per second of the host's time, on one simulating thread. Pixels are computed by further
+    /// threads, as many as the host has.
     pub simulated_seconds_per_second: Option<f64>,
 }
 
-/// Median of some values, and the interval that contains nine of ten.
+/// Median of a set of values, and the interval that contains 90 % of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Median of the values.
@@ -60,8 +61,8 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Computes the spread of values without NaN, with interpolation between neighbours. Returns `None` for no
-    /// values.
+    /// Computes the median and percentiles of values, with interpolation between neighbours. NaN values are left out.
+    /// Returns `None` if no values remain.
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
@@ -76,7 +77,7 @@ impl Spread {
 }
 
 impl LevelRecord {
-    /// Parses a record.
+    /// Parses the text of a record.
     ///
     /// # Errors
     ///
@@ -91,14 +92,14 @@ impl LevelRecord {
 }
 
 impl LevelReport {
-    /// Returns the level's name for tables and charts.
+    /// Returns the name of the level of modelling, for tables and charts.
     #[must_use]
     pub fn name(&self) -> String {
         let times = if self.times_of_code && self.level != Level::Cycle { ", times of code" } else { "" };
         format!("{}{times}", self.level.name())
     }
 
-    /// Returns advice on the uses of the level, and on uses to avoid.
+    /// Returns advice on when to use this level of modelling, and when not.
     #[must_use]
     pub const fn advice(&self) -> &'static str {
         match (self.level, self.times_of_code) {

@@ -1,16 +1,16 @@
-//! Limits: the largest number of triangles that a pipeline can draw in time.
+//! Searches for limits: the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. The closed form of the analytic level, if the pipeline has one,
-//! only gives the size at which the search starts, and sizes that are doubtful.
+//! A limit is found by simulation, not by a formula. If the pipeline has a closed-form formula (the analytic level),
+//! the formula only gives hints: the size at which the search starts, and sizes that may miss the goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
 //!   Hints --near: bracket, bisect--> first miss --sizes below it, doubtful sizes--> least size that misses
 //! ```
 //!
-//! The result need not be monotone, because a nearly empty clump costs as many messages as a full one. The search
-//! therefore also tries sizes below the result of the bisection, and the smallest miss counts. [`most`] states the
-//! guarantee.
+//! A larger scene can reach a goal that a smaller scene misses, because a nearly empty clump (group of triangles) costs
+//! as many messages as a full one. The search therefore also tries sizes below the result of the bisection, and the
+//! smallest miss counts. [`most`] states the guarantee.
 
 mod over;
 mod search;
@@ -28,27 +28,27 @@ use pxpl5_run::{
 use pxpl5_scene::{Scene, builtin};
 use std::sync::Arc;
 
-/// A search for a limit: a pipeline, a machine, the triangles and the goal.
+/// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
-    /// Registry with the pipeline's closed form.
+    /// Registry that contains the pipeline's analytic model.
     pub registry: Arc<Registry>,
     /// Machine on which the pipeline runs.
     pub config: MachineConfig,
     /// Pipeline whose limit is searched.
     pub pipeline: Arc<dyn Pipeline>,
-    /// Triangles, goal, and number of fields simulated for each size.
+    /// Kind of triangles, goal, and number of fields simulated for each number of triangles.
     pub criterion: LimitCriterion,
-    /// Model whose triangles replace the criterion's triangles, if any.
+    /// Model that replaces the criterion's test scene, if any.
     pub model: Option<Model>,
-    /// Level of modelling at which every size is tried.
+    /// Level of modelling at which every number of triangles is tried.
     pub level: Level,
 }
 
-/// A model that is thinned out evenly to every size. Its number of triangles bounds the search.
+/// A model that is thinned out evenly to each number of triangles. The search stops at the model's own number.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Settings of the model's scene. Its number of triangles is ignored.
+    /// Settings of the model's scene. The number of triangles in these settings is ignored.
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
@@ -72,22 +72,23 @@ impl Model {
     }
 }
 
-/// Ratio of NTSC's rates to round rates.
+/// Ratio of NTSC's rates to round rates: 59.94 Hz to 60 Hz.
 const NTSC: f64 = 0.999;
 
-/// Maximum number of triangles that is tried.
+/// Maximum number of triangles that a search tries.
 pub const CEILING: u32 = 1_000_000;
 
-/// Maximum number of sizes whose margin the analytic level computes.
+/// Maximum number of sizes (numbers of triangles) whose margin to the goal the analytic level computes.
 const MARGINS: u32 = 1_000;
-/// Maximum number of doubtful sizes that are tried.
+/// Maximum number of doubtful sizes that a search tries: numbers of triangles with a small margin to the goal.
 const DOUBTFUL: usize = 8;
 
-/// Minimum number of pictures after the warm-up. With fewer pictures no rate is known, and the goal counts as missed.
+/// Minimum number of pictures after the warm-up. With fewer pictures the update rate is unknown, and the goal counts as
+/// missed.
 const PICTURES: usize = 4;
 
 impl LimitQuery {
-    /// Creates a query from a checked experiment: its machine, pipeline and level, and the pipeline's own criterion.
+    /// Creates a query from the machine, pipeline and level of a checked experiment, with the pipeline's own criterion.
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         Self {
@@ -122,11 +123,11 @@ impl LimitQuery {
         self.search_with(|_| {})
     }
 
-    /// Searches; `progress` hears how many sizes were tried.
+    /// Searches for the limit. `progress` is called with the number of sizes tried so far.
     ///
     /// # Errors
     ///
-    /// As [`search`](Self::search).
+    /// Fails in the same cases as [`search`](Self::search).
     pub fn search_with(&self, mut progress: impl FnMut(u64)) -> Result<Limit, ExperimentError> {
         let mut tried = 0;
         let limit = most(self.ceiling(), &self.hints(), |triangles| {
@@ -141,8 +142,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Refuses a rate as the goal if the scene has no rate of updates. A display with cube faces redraws so little of
-    /// some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate and the scene has no measurable one. A display with cube faces
+    /// redraws so little of some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
         let (Goal::RateHz(hz), Some(_)) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
         let outcome = self.experiment(1)?.run()?;
@@ -156,7 +157,7 @@ impl LimitQuery {
         )))
     }
 
-    /// Searches for the limit without the hints of the analytic level, which takes longer.
+    /// Searches for the limit without the hints of the analytic level. This search takes longer.
     ///
     /// # Errors
     ///
@@ -165,11 +166,11 @@ impl LimitQuery {
         most(self.ceiling(), &Hints::default(), |triangles| self.reached(triangles))
     }
 
-    /// Returns the hints of the analytic level. There are none if the pipeline has no closed form, or if the search
-    /// itself uses the analytic level.
+    /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
+    /// search itself uses the analytic level.
     ///
-    /// A model would be thinned out and viewed for each size, which takes as long at the analytic level as at any
-    /// other. Small triangles therefore replace the model.
+    /// A model would have to be thinned out and viewed for each size, which takes as long at the analytic level as at
+    /// any other level. Small triangles therefore stand in for the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
@@ -183,7 +184,8 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Returns sizes up to 5 % above `near` with a smaller margin than their neighbours, smallest margin first.
+    /// Returns numbers of triangles up to 5 % above `near` that have a smaller margin to the goal than their
+    /// neighbours. The smallest margin comes first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
@@ -196,7 +198,8 @@ impl LimitQuery {
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// Returns the distance of a size from missing the goal, in the unit of the goal. A larger margin is better.
+    /// Returns the margin by which a number of triangles reaches the goal, in the unit of the goal. A negative margin
+    /// is a miss.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {
@@ -206,7 +209,7 @@ impl LimitQuery {
         }
     }
 
-    /// Returns the maximum number of triangles that is tried.
+    /// Returns the maximum number of triangles that the search tries.
     fn ceiling(&self) -> u32 {
         let of_model = self.model.as_ref().map(|model| model.whole.triangles().len());
         of_model.map_or(CEILING, |triangles| u32::try_from(triangles).unwrap_or(CEILING).min(CEILING))
@@ -231,7 +234,7 @@ impl LimitQuery {
         summarise(&self.registry, &self.experiment(triangles)?)
     }
 
-    /// Returns true if a size reaches the goal.
+    /// Returns true if the pipeline reaches the goal with this number of triangles.
     ///
     /// # Errors
     ///

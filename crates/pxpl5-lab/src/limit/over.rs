@@ -1,4 +1,4 @@
-//! Limits over any setting: from which value on, or up to which, an experiment reaches a goal.
+//! Limits of any numeric setting: the smallest or greatest value with which an experiment reaches a goal.
 
 use super::is_reached;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
@@ -11,32 +11,32 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The values of a setting that are tried: steps from one value to another.
+/// The values of a setting that a search can try: equally spaced, from a smallest value on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Values {
-    /// The least value.
+    /// The smallest value.
     pub from: f64,
-    /// The distance from one value to the next: 1 for whole numbers.
+    /// The distance from one value to the next; 1 for whole numbers.
     pub step: f64,
-    /// How many values there are, at least 2.
+    /// Number of values, at least 2.
     pub count: u64,
 }
 
 impl Values {
-    /// Returns the whole numbers of a range; `None` of fewer than two.
+    /// Returns the whole numbers from `from` to `to`, or `None` if there are fewer than two.
     #[must_use]
     pub fn whole(from: u64, to: u64) -> Option<Self> {
         (to > from).then(|| Self { from: from as f64, step: 1.0, count: to - from + 1 })
     }
 
-    /// Returns real numbers in [`STEPS`] equal steps; `None` of an empty range.
+    /// Returns real numbers from `from` to `to` in [`STEPS`] equal steps, or `None` for an empty range.
     #[must_use]
     pub fn real(from: f64, to: f64) -> Option<Self> {
         let step = (to - from) / STEPS as f64;
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns a value by its number, from 0.
+    /// Returns the value with an index, counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
@@ -52,62 +52,63 @@ impl Values {
         self.step == 1.0 && self.from.fract() == 0.0
     }
 
-    /// Writes a value as a setting: whole numbers without a point.
+    /// Formats a value as the text of a setting. Whole numbers have no decimal point.
     #[must_use]
     pub fn text(&self, value: f64) -> String {
         if self.is_whole() { format!("{value:.0}") } else { format!("{value:?}") }
     }
 }
 
-/// Steps between the ends of a range of real numbers.
+/// Number of steps between the ends of a range of real numbers.
 pub const STEPS: u64 = 64;
 
-/// Which values of a setting reach a goal.
+/// A search for the values of one setting with which an experiment reaches a goal.
 #[derive(Clone, Debug)]
 pub struct OverQuery {
-    /// The experiment with all other settings.
+    /// The experiment with all of its other settings.
     pub file: ExperimentFile,
-    /// The setting, such as `machine.n_gps`.
+    /// Path of the varied setting, such as `machine.n_gps`.
     pub key: String,
-    /// The values that are tried.
+    /// The values of the setting that can be tried.
     pub values: Values,
-    /// Goal that a value must reach.
+    /// Goal that the experiment must reach.
     pub goal: Goal,
 }
 
-/// The answer.
+/// Result of a search for the values of a setting that reach a goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OverLimit {
-    /// The least value that reaches the goal, if a smaller one was tried and misses it.
+    /// The smallest value that reaches the goal. `None` if no smaller tried value misses the goal.
     pub least: Option<f64>,
-    /// The greatest value that reaches the goal, if a greater one was tried and misses it.
+    /// The greatest value that reaches the goal. `None` if no greater tried value misses the goal.
     pub most: Option<f64>,
-    /// True if any value that was tried reaches the goal.
+    /// True if at least one tried value reaches the goal.
     pub reached: bool,
-    /// Values that were tried, in order, each with whether it reaches the goal.
+    /// All tried values in ascending order, each with true if the value reaches the goal.
     pub tried: Vec<(f64, bool)>,
-    /// The value next to the limit that misses the goal, or the best one where all miss.
+    /// A value that misses the goal: the one next to the limit, or the best value if all values miss.
     pub missed_at: Option<f64>,
-    /// Limit of the experiment at that value, in words.
+    /// Resource that limits the experiment with the value `missed_at`, in words.
     pub because: Option<String>,
 }
 
-/// Result of one value.
+/// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
-    /// How near the goal is; more is better.
+    /// Closeness of the result to the goal. A greater score is better.
     score: f64,
     because: Option<String>,
 }
 
 impl OverQuery {
-    /// Returns the values that are tried by default.
+    /// Returns the values of a setting that are tried by default.
     ///
-    /// The numbers of boards go up to those of the largest preset. Other parameters go through the range that the sources allow.
+    /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
+    /// its sources allow.
     ///
     /// # Errors
     ///
-    /// [`FileError::Missing`] for a setting without such a range.
+    /// Returns [`FileError::Missing`] for a setting without such a range.
     pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, FileError> {
         let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
             let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
@@ -128,14 +129,15 @@ impl OverQuery {
         found.ok_or(FileError::Missing { key: "--from and --to", how: "the values of this key that are tried" })
     }
 
-    /// Searches; `progress` hears of every value that was tried.
+    /// Searches for the limit. `progress` is called with the number of values tried so far.
     ///
-    /// The ends of the range and three values between them are tried first. From one that reaches the goal the search goes by halves to
-    /// either side. So a limit is exact where the goal is reached on one side of it only.
+    /// The search first tries the ends of the range and three values between them. If one of these values reaches the
+    /// goal, the search bisects from there to either side. The limit is therefore exact if all values on one side of
+    /// the limit reach the goal and all on the other side miss.
     ///
     /// # Errors
     ///
-    /// [`FileError`] and [`ExperimentError`] where no value at all can be run.
+    /// Returns [`FileError`] or [`ExperimentError`] if no value at all can be run.
     pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, OverError> {
         let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
         let last = self.values.count - 1;
@@ -184,10 +186,10 @@ impl OverQuery {
     }
 }
 
-/// Why no value of a setting could be run.
+/// Error of a search in which no value of the setting could be run.
 #[derive(Debug, thiserror::Error)]
 pub enum OverError {
-    /// The settings are wrong.
+    /// The settings of the experiment are invalid.
     #[error(transparent)]
     File(#[from] FileError),
     /// The machine cannot run.
@@ -195,18 +197,18 @@ pub enum OverError {
     Experiment(#[from] ExperimentError),
 }
 
-/// Values that were tried.
+/// A search in progress, with the results of the tried values.
 struct Search<'a> {
     query: &'a OverQuery,
     trials: BTreeMap<u64, Trial>,
-    /// The last error of a value that could not be run.
+    /// The error of the last value that could not be run.
     refused: Option<OverError>,
-    /// The scene that was loaded last, with its choice.
+    /// The scene that was loaded last, with the settings that chose it.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
 
 impl Search<'_> {
-    /// Returns true if a value reaches the goal; one that cannot be run does not.
+    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not.
     fn reaches(&mut self, number: u64) -> bool {
         if let Some(trial) = self.trials.get(&number) {
             return trial.reached;
@@ -254,7 +256,7 @@ impl Search<'_> {
         self.trials.iter().map(|(number, trial)| (self.query.values.value(*number), trial.reached)).collect()
     }
 
-    /// All values miss the goal: the best of them tells why.
+    /// Returns the result if all values miss the goal. The best value then states the limiting resource.
     fn none(mut self) -> Result<OverLimit, OverError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {
@@ -274,7 +276,7 @@ impl Search<'_> {
     }
 }
 
-/// How near a goal is, in units of its own: more is better.
+/// Returns the closeness of a run to the goal, in the goal's own unit. A greater score is better.
 fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     let score = match goal {
         Goal::NoMissedRetrace => summary.due.map(|due| -(due.not_shown() as f64)),
@@ -284,10 +286,10 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     score.filter(|score| score.is_finite()).unwrap_or(f64::MIN)
 }
 
-/// A board that is busier than this limits the machine by itself.
+/// Utilization above which a board counts as always busy, and so limits the machine.
 const FULL: f64 = 0.95;
 
-/// Returns the limit of a run: the board that is always busy, or else the resource that the latency waits for.
+/// Returns the limiting resource of a run: a board that is always busy, or else the longest wait in the latency.
 fn because(outcome: &Outcome) -> Option<String> {
     let utilisation = Utilisation::of(outcome.record())?;
     let kinds = [

@@ -1,45 +1,46 @@
-//! Search for the smallest size that misses a goal, by trying sizes.
+//! Searches for the smallest number of triangles (size) that misses a goal, by trying sizes.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Result of a search, with the tried sizes around the limit.
+/// Result of a search for the largest number of triangles, with facts about the sizes that were tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
-    /// Largest size below the first miss. Every tried size up to this one reached the goal. 0 if one triangle already
-    /// misses.
+    /// Largest number of triangles below the first miss. Every tried size up to this one reached the goal. 0 if one
+    /// triangle already misses the goal.
     pub triangles: u32,
-    /// Smallest tried size that missed the goal. `None` if all tried sizes reached the goal.
+    /// Smallest tried number of triangles that missed the goal. `None` if all tried sizes reached the goal.
     pub first_miss: Option<u32>,
-    /// Largest tried size above the first miss that reached the goal, if any.
+    /// Largest tried number of triangles above the first miss that nevertheless reached the goal, if any.
     pub island: Option<u32>,
-    /// Smallest size from which all sizes up to `triangles` were tried. Below this size only some sizes were tried.
+    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Below this size only some
+    /// sizes were tried.
     pub unbroken_from: u32,
-    /// Number of simulated sizes.
+    /// Number of sizes that were simulated.
     pub tried: usize,
 }
 
-/// Hints of another model, which reduce the number of trials and change no result of a trial.
+/// Hints from another model, which reduce the number of trials. They do not change the result of any trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
-    /// Size near the limit. Without this hint the search starts with one triangle.
+    /// Number of triangles near the limit. Without this hint the search starts with one triangle.
     pub near: Option<u32>,
-    /// Sizes that may miss the goal although larger ones reach it. The search tries them too.
+    /// Numbers of triangles that may miss the goal although larger ones reach it. The search tries them too.
     pub doubtful: Vec<u32>,
 }
 
-/// Number of sizes directly below the result that are all tried: the sizes of two clumps. The search looks for
-/// islands up to the same distance above the result.
+/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. Above the
+/// result, the search looks equally far for sizes that reach the goal.
 const LOOK: u32 = 60;
 
-/// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer,
-/// so fewer are tried.
+/// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer to
+/// simulate, so fewer of them are tried.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// Minimum number of consecutive sizes that are tried.
+/// Minimum number of consecutive sizes that are tried on either side of the result.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// Sizes that were tried, with the result of each.
+/// The sizes that were tried so far, with the result of each.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -58,7 +59,7 @@ impl<F> Tried<F> {
         Ok(answer)
     }
 
-    /// Returns the smallest size that missed.
+    /// Returns the smallest tried size that missed the goal.
     fn first_miss(&self) -> Option<u32> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
@@ -68,7 +69,7 @@ impl<F> Tried<F> {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
 
-    /// Tries sizes around `near` in steps that double, until one size reaches the goal and one misses.
+    /// Tries sizes around `near` in steps that double, until one size has reached the goal and another has missed.
     fn bracket<E>(&mut self, near: u32, ceiling: u32) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -87,7 +88,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Bisects the gap below the first miss until the size directly before it was tried.
+    /// Bisects the gap below the first miss, until the size directly before the first miss was tried.
     fn bisect<E>(&mut self) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -102,7 +103,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Tries sizes until one misses. Returns true if one missed.
+    /// Tries sizes until one misses the goal. Returns true if one missed.
     fn finds_a_miss<E>(&mut self, sizes: impl IntoIterator<Item = u32>) -> Result<bool, E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -130,11 +131,15 @@ impl<F> Tried<F> {
 
 /// Returns the smallest size that misses the goal, up to `ceiling`, as far as trials can show.
 ///
-/// Sizes above the first miss may reach the goal, because a nearly empty clump costs as many messages as a full one.
-/// The result is guaranteed in three respects. The first miss misses the goal. The sizes from
-/// [`Limit::unbroken_from`] to the size before the first miss reach the goal. No tried size below misses the goal.
-/// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A
-/// miss between these sizes is not found.
+/// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
+/// messages as a full one. The result is guaranteed in three respects:
+///
+/// - The first miss misses the goal.
+/// - The sizes from [`Limit::unbroken_from`] to the size before the first miss reach the goal.
+/// - No tried size below these sizes misses the goal.
+///
+/// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A miss
+/// between these sizes is not found.
 ///
 /// # Errors
 ///
@@ -161,7 +166,7 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns the limit by bisection alone, as a hint for the search with another model.
+/// Returns the limit found by bisection alone, as a hint for the search with another model.
 ///
 /// # Errors
 ///
@@ -173,7 +178,7 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the sizes to try below a result: consecutive ones, doubtful ones, and some at distances that double.
+/// Returns the sizes to try below a found limit: consecutive sizes, doubtful sizes, and some at distances that double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
@@ -182,12 +187,12 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// Returns the number of consecutive sizes to try on either side of a result.
+/// Returns the number of consecutive sizes to try on either side of a found limit.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss, as many as below the result.
+/// Returns the sizes to try above the first miss. Their number is the same as below the limit.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;
@@ -247,7 +252,7 @@ mod tests {
     }
 
     proptest! {
-        /// A search ends at the same size for any starting size if no size below the result misses.
+        /// Tests that a search ends at the same size for any starting size, if all sizes above the limit miss.
         #[test]
         fn hints_change_the_number_of_trials_alone(
             limit in 0u32..5_000,
@@ -259,7 +264,7 @@ mod tests {
             prop_assert_eq!((found.triangles, found.first_miss), (limit, Some(limit + 1)));
         }
 
-        /// All sizes in the reported unbroken range reach the goal.
+        /// Tests that all sizes reach the goal from `unbroken_from` up to the result.
         #[test]
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));

@@ -1,11 +1,11 @@
-//! The fit of one interpretation of the papers to the published figures.
+//! The fit of one interpretation of the papers: its agreement with the published figures.
 
 use super::FIGURES;
 use crate::figures::{Bench, Figure, Reading};
 use pxpl5_run::ExperimentError;
 use serde::Serialize;
 
-/// Fit of one figure under one interpretation.
+/// Agreement of one published figure with the model under one interpretation of the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FigureFit {
     /// Number of the figure.
@@ -16,15 +16,15 @@ pub struct FigureFit {
     pub simulated: f64,
     /// Unit of the published and the simulated value.
     pub unit: &'static str,
-    /// Relative error in percent: (simulated - published) / published. 0 within a printed range.
+    /// Relative error in percent: (simulated - published) / published. The error is 0 within a printed range.
     pub error_percent: f64,
-    /// Printed standard deviation. `None` for figures without a printed deviation of samples.
+    /// Printed standard deviation of the samples. `None` for figures without a printed deviation.
     pub published_sd: Option<f64>,
     /// Standard deviation of the simulated samples. `None` for figures without a printed deviation.
     pub simulated_sd: Option<f64>,
 }
 
-/// Fit of all figures under one interpretation.
+/// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
     /// The interpretation.
@@ -33,32 +33,32 @@ pub struct Fit {
     pub words: String,
     /// Fit of each figure, in the order of [`FIGURES`].
     pub figures: Vec<FigureFit>,
-    /// Mean of the absolute errors in percent.
+    /// Mean of the figures' absolute errors in percent.
     pub mean_error_percent: f64,
-    /// Largest absolute error in percent.
+    /// Largest absolute error of a figure in percent.
     pub greatest_error_percent: f64,
-    /// Logarithm of the likelihood of the printed means and deviations, up to a constant. See
+    /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant. See
     /// [`FigureFit::log_likelihood`].
     pub log_likelihood: f64,
-    /// Figures that the interpretation does not explain: their error exceeds 8 %, or their deviation differs by more
-    /// than a quarter.
+    /// Numbers of the figures that the interpretation does not explain. Their error exceeds 8 %, or their standard
+    /// deviation differs by more than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 
-/// Largest error in percent of a mean that still counts as explained. The bound is this project's own.
+/// Largest error of a mean, in percent, that still counts as explained. This project chose the limit.
 const EXPLAINED_PERCENT: f64 = 8.0;
 
-/// Largest relative error of a deviation that still counts as explained.
+/// Largest relative error of a standard deviation that still counts as explained.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// Relative uncertainty of the model itself: clocks and costs that no paper gives.
+/// Relative uncertainty of the model itself, because no paper gives some of its clocks and costs.
 const DISCREPANCY: f64 = 0.02;
 
-/// Number of samples behind the papers' means. A mean of 4.47 with a deviation of 0.502 follows from samples
-/// of 4 and 5 only for 67 to 119 samples.
+/// Number of samples behind the means that the papers print. A mean of 4.47 with a standard deviation of 0.502 follows
+/// from samples of 4 and 5 only for 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
-/// Returns the deviation that the paper prints for an application scene.
+/// Returns the standard deviation that the paper prints for an application scene. `None` for other figures.
 fn published_sd(figure: &Figure) -> Option<f64> {
     ["7", "7b", "7c"].contains(&figure.id).then_some(figure.spread).flatten()
 }
@@ -83,9 +83,9 @@ impl FigureFit {
         })
     }
 
-    /// Returns the logarithm of the figure's likelihood. The error of the mean is normal with three parts: the
-    /// printed digits, the error of a mean of 87 samples, and 2 % for the model. The logarithm of the ratio
-    /// of deviations is normal with a standard deviation of 0.25.
+    /// Returns the logarithm of the likelihood of the figure's printed values. The error of the mean has a normal
+    /// distribution with three parts: the printed digits, the error of a mean of 87 samples, and 2 % for the model. The
+    /// logarithm of the ratio of both deviations has a normal distribution with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());
@@ -105,7 +105,7 @@ impl FigureFit {
 }
 
 impl Fit {
-    /// Measures all figures with an interpretation.
+    /// Measures all figures under an interpretation of the papers.
     ///
     /// # Errors
     ///
@@ -125,14 +125,14 @@ impl Fit {
         })
     }
 
-    /// Returns the mean of the absolute errors without one figure, in percent.
+    /// Returns the mean of the absolute errors in percent, without the figure `id`.
     #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))
     }
 }
 
-/// Returns half of the last digit of a value that is printed with three digits.
+/// Returns half a unit of the last digit, for a value that is printed with three digits.
 pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Among hundreds of combinations some may fit a dozen figures by chance. Every figure is therefore also predicted by
-//! the interpretation that fits all other figures best. The result also counts the interpretations that are as good
-//! as the best within the printed digits. The text of the papers decides among those.
+//! the interpretation that fits all other figures best. The result also counts the interpretations that are as good as
+//! the best within the printed digits. The text of the papers decides between these interpretations.
 //!
 //! Source of the questions: TR94, which leaves them open.
 

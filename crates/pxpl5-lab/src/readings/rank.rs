@@ -1,4 +1,4 @@
-//! Ranking of all interpretations of the papers.
+//! Ranks all interpretations of the papers by their agreement with the published figures.
 
 use super::FIGURES;
 use super::fit::{Fit, half_a_digit};
@@ -8,39 +8,39 @@ use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Prediction of a figure by the interpretation that fits all other figures best.
+/// Cross-validation of a figure: its prediction by the interpretation that fits all other figures best.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
     /// Number of the figure.
     pub id: &'static str,
     /// Interpretation with the smallest mean error over the other figures.
     pub chosen: Reading,
-    /// The interpretation in words.
+    /// The chosen interpretation in words.
     pub words: String,
-    /// Relative error of the prediction in percent.
+    /// Relative error in percent of the prediction for the figure.
     pub error_percent: f64,
 }
 
-/// Ranking of all interpretations.
+/// Ranking of all interpretations of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Readings {
     /// Name and version of the JSON layout.
     pub schema: &'static str,
-    /// Every interpretation at the analytic level, by ascending mean error.
+    /// Fit of every interpretation at the analytic level, by ascending mean error.
     pub analytic: Vec<Fit>,
-    /// The best interpretations at the transaction level, by ascending mean error.
+    /// Fit of the best interpretations at the transaction level, by ascending mean error.
     pub transaction: Vec<Fit>,
     /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
     pub left_out: Vec<LeaveOneOut>,
-    /// Number of interpretations whose mean error equals that of the best one within the printed digits.
+    /// Number of interpretations whose mean error equals the error of the best one, within the printed digits.
     pub as_good: usize,
-    /// Part of a mean error that the rounding of printed digits can hide, in percent.
+    /// Part of a mean error, in percent, that the rounding of printed digits can explain.
     pub rounding_percent: f64,
 }
 
-/// Ranks all interpretations at the analytic level, with the seeds and frames of a bench. The `best` ones are then
-/// simulated at the transaction level. `finished` is called with the number of finished runs and the number of all
-/// runs.
+/// Ranks all interpretations at the analytic level, with the seeds and frames of a bench (common settings). The first
+/// `best` interpretations are then simulated at the transaction level. `finished` is called with the number of finished
+/// runs and the number of all runs.
 ///
 /// # Errors
 ///
@@ -84,7 +84,8 @@ fn left_out(fits: &[Fit], id: &'static str) -> Option<LeaveOneOut> {
     Some(LeaveOneOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
 }
 
-/// Returns half of the last printed digit in percent, as a mean over the figures. Papers print three digits.
+/// Returns the mean rounding error of the figures in percent: half of the last printed digit. Papers print three
+/// digits.
 fn rounding_percent(fits: &[Fit]) -> f64 {
     let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
     let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
@@ -95,7 +96,7 @@ fn rounding_percent(fits: &[Fit]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A bench with a cache shared by all interpretations gives the same fits as a separate bench for each.
+    /// Tests that a bench with a cache shared by all interpretations gives the same fits as a separate bench for each.
     #[test]
     fn runs_that_readings_share_change_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);

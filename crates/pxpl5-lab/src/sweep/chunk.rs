@@ -1,14 +1,15 @@
-//! Simulation of some points of a sweep within a time limit, for callers that distribute points themselves.
+//! Simulates some points of a sweep within a time limit. This serves callers that distribute points themselves.
 
 use super::{Status, Sweep, SweepRow};
 use std::time::{Duration, Instant};
 
 impl Sweep {
-    /// Simulates some points one after the other on this thread, until `at_most` has passed. Each row comes with the
-    /// seconds that it took. The first point is always simulated, and no point is interrupted, so a caller that
-    /// repeats the call with the remaining points finishes.
+    /// Simulates the given points one after the other on this thread, until the time `at_most` has passed. Returns each
+    /// row with the seconds that its simulation took.
     ///
-    /// A row depends only on the file and the point. Errors of a point, even panics, become its row.
+    /// The first point is always simulated, and no point is interrupted. A caller that repeats the call with the
+    /// remaining points therefore finishes. A row depends only on the file and the point. An error of a point, even a
+    /// panic, is stored in the row.
     #[must_use]
     pub fn rows(&self, points: &[u64], at_most: Duration) -> Vec<(SweepRow, f64)> {
         let begin = Instant::now();
@@ -79,8 +80,8 @@ mod tests {
         assert_eq!(found, at_once);
     }
 
-    /// Rows do not depend on the point that loads the scene first. A scene with and without its back faces must not
-    /// be confused.
+    /// Tests that rows do not depend on the point that loads the scene first. The same scene with and without its back
+    /// faces counts as two scenes.
     #[test]
     fn a_row_does_not_depend_on_the_points_before_it() {
         // Half of a sphere's triangles face away from the eye.

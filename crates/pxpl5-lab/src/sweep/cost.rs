@@ -1,7 +1,7 @@
-//! Estimates of the cost of points before they run: [`crate::estimate`], with the number of pictures from closed
-//! forms.
+//! Estimates the cost of points before they run. The estimates are those of [`crate::estimate`]. The analytic level
+//! (closed form) gives the number of pictures.
 //!
-//! Callers that distribute points correct the estimate by the time that finished points have taken.
+//! Callers that distribute points over computers correct the estimates by the durations of finished points.
 
 use super::Sweep;
 use crate::Plan;
@@ -9,22 +9,23 @@ use crate::estimate::{Estimate, Work};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to build a plan, its scene and its row.
+/// Seconds to build a point's plan, its scene and its row.
 const POINT: f64 = 3e-3;
 
-/// Memory of a point that simulates nothing, in bytes.
+/// Memory in bytes of a point that simulates nothing.
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the seconds that each point takes on one core. The number of pictures comes from the closed form, if
-    /// the pipeline has one. An invalid point costs almost nothing. Points that differ only in their seed get the
-    /// same estimate.
+    /// Estimates the time in seconds that each point takes on one core. If the pipeline has an analytic model (closed
+    /// form), the model gives the number of pictures. An invalid point costs almost nothing. Points that differ only in
+    /// their seed get the same estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
-    /// Estimates the seconds and the memory of each point. A point keeps all observations until it is measured.
+    /// Estimates the time in seconds and the memory of each point. Until its results are measured, a point keeps all
+    /// observations in memory.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
@@ -53,7 +54,8 @@ impl Sweep {
     }
 }
 
-/// Returns the number of pictures shown in a field by the closed form, or `None` if there is no closed form.
+/// Returns the number of pictures shown per field according to the pipeline's analytic model (closed form). Returns
+/// `None` if the pipeline has no such model.
 fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

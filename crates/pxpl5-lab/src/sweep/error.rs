@@ -4,11 +4,11 @@ use crate::experiment_file::FileError;
 use crate::manifest::ManifestError;
 use thiserror::Error;
 
-/// Error of a sweep, or of joining its shards.
+/// Error of a sweep, or of merging its shards (parts computed by separate processes).
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// A file or folder that cannot be read or written.
+    /// A file or folder cannot be read or written.
     #[error("{path}: {doing}: {reason}")]
     Io {
         /// Path of the file or folder.
@@ -18,71 +18,71 @@ pub enum SweepError {
         /// Message of the operating system.
         reason: String,
     },
-    /// A folder that another process is writing into.
+    /// Another process is writing into the folder.
     #[error("{path}: another process is writing here; wait for it, or choose another folder")]
     Locked {
-        /// Path of the folder, as the user gave it.
+        /// Path of the folder, as given by the user.
         path: String,
     },
-    /// A folder that already holds finished points, without permission to resume.
+    /// The folder already holds finished points, and the user did not allow a resume.
     #[error("{path}: there are {rows} finished points here already; continue with --resume, or choose another folder")]
     NotEmpty {
-        /// Path of the folder, as the user gave it.
+        /// Path of the folder, as given by the user.
         path: String,
         /// Number of finished points in the folder.
         rows: u64,
     },
-    /// A folder with results of another sweep.
+    /// The folder holds results of another sweep.
     #[error("{path}: these are results of another sweep: {what} was {found}, expected {expected}")]
     Foreign {
-        /// Path of the file of rows.
+        /// Path of the file of result rows.
         path: String,
-        /// First value that differs between the two headers.
+        /// Name of the first value that differs between the two headers.
         what: String,
         /// Value of this sweep.
         expected: String,
         /// Value in the file.
         found: String,
     },
-    /// A folder with files of another command.
+    /// The folder holds files of another command.
     #[error("{path}: these are files of `pxpl5 {command}`; choose another folder")]
     Occupied {
-        /// Path of the folder, as the user gave it.
+        /// Path of the folder, as given by the user.
         path: String,
         /// Command that wrote the files.
         command: String,
     },
-    /// A manifest that cannot be used.
+    /// The manifest (list of files) of the folder cannot be used.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
-    /// A line that is not a row.
+    /// A line in the file of result rows is not a row.
     #[error("{path}, line {line}: expected a row of a sweep, found {found}")]
     Damaged {
-        /// Path of the file of rows.
+        /// Path of the file of result rows.
         path: String,
-        /// Number of the line, from 1.
+        /// Number of the line, counted from 1.
         line: usize,
-        /// Beginning of the line, or its error.
+        /// Beginning of the line, or the parser's error.
         found: String,
     },
-    /// A point with two different rows.
+    /// Two different rows exist for the same point.
     #[error("point {point} has different rows in {first} and {second}")]
     Contradiction {
-        /// Number of the point, from 0.
+        /// Index of the point, counted from 0.
         point: u64,
         /// Path of the file whose row was read first.
         first: String,
         /// Path of the file whose row was read second, possibly the same file.
         second: String,
     },
-    /// Points that no folder holds.
+    /// Some points are in none of the folders.
     #[error("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume")]
     Missing {
         /// Number of missing points.
         missing: u64,
         /// Number of points of the whole sweep.
         points: u64,
-        /// Missing points as ranges of their numbers.
+        /// Missing points as ranges of their indices.
         which: String,
     },
     /// An invalid experiment file.

@@ -1,4 +1,4 @@
-//! The header of a sweep's rows, which holds all data needed to repeat them.
+//! The header of a sweep's file of rows, which holds all data needed to repeat the sweep.
 
 use super::{Axis, Sweep, Values};
 use crate::experiment_file::{FileError, Plan};
@@ -16,13 +16,13 @@ pub struct Header {
     pub version: String,
     /// Preset of the machine at the first valid point.
     pub machine: String,
-    /// Hash of the settings, the space and the quantities.
+    /// Hash of the settings, the parameter space and the measured quantities.
     pub config_hash: String,
     /// Level of modelling at the first valid point.
     pub level: String,
     /// Seed at the first valid point.
     pub seed: u64,
-    /// Title of one line for the user.
+    /// Title of the sweep in one line, for the user.
     pub title: Option<String>,
     /// Number of points of the whole sweep, over all shards.
     pub points: u64,
@@ -30,11 +30,11 @@ pub struct Header {
     pub measure: BTreeMap<String, String>,
     /// Settings that all points share.
     pub settings: BTreeMap<String, Value>,
-    /// Axes of the space: settings that change together, with their values.
+    /// Axes of the parameter space. An axis is a group of settings that change together, with their values.
     pub axes: Vec<AxisRecord>,
 }
 
-/// An axis in the JSON layout.
+/// An axis of the parameter space in the JSON layout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AxisRecord {
     /// Keys of the experiment file that change together.
@@ -44,17 +44,17 @@ pub struct AxisRecord {
     pub steps: Steps,
 }
 
-/// Steps of an axis in the JSON layout.
+/// Steps of an axis of the parameter space in the JSON layout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Steps {
-    /// Lists of values, one list for each step with one value for each path.
+    /// Lists of values: one list for each step, which has one value for each path.
     Steps(Vec<Vec<Value>>),
-    /// Ranges of a long axis, one for each path: first value, step, and number of values.
+    /// Ranges of a long axis, one range for each path: first value, step, and number of values.
     Ranges(Vec<[i64; 3]>),
 }
 
-/// Maximum number of steps that are written as lists.
+/// Maximum number of steps of an axis that are written as lists of values.
 const LISTED_STEPS: u64 = 1_000;
 
 impl Header {
@@ -62,7 +62,7 @@ impl Header {
     pub const SCHEMA: &'static str = "pxpl5-sweep/1";
 }
 
-/// Maximum number of points among which the first valid point is searched. Assumed: some seconds of work.
+/// Maximum number of points that are searched for the first valid point. Assumed: some seconds of work.
 const MAX_POINTS_SEARCHED: u64 = 100_000;
 
 impl Sweep {
@@ -100,7 +100,7 @@ impl Sweep {
 }
 
 /// Returns the hash that identifies a sweep. The hash covers the effective settings of the first point, because a
-/// preset may change between versions, and the contents of all files that points name.
+/// preset may change between versions. It also covers the contents of all files that points name.
 fn hash(
     version: &str,
     first: &Plan,

@@ -1,4 +1,4 @@
-//! The input files of a sweep's points.
+//! The input files that points of a sweep read.
 
 use super::{Sweep, Values};
 use crate::experiment_file::{beside, is_file};
@@ -8,13 +8,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Value;
 
-/// Keys whose values may name a file, each with a test for such values.
+/// Function that returns true if a value names a file. Some keys have values of both kinds.
 type NamesFile = fn(&str) -> bool;
 const KEYS: [(&str, NamesFile); 2] = [("scene", is_file), ("head.motion", is_recording)];
 
 impl Sweep {
-    /// Returns the hash of each file that a point may read, by the name in the sweep. A file that cannot be read
-    /// counts as empty; its points fail with the reason.
+    /// Returns the hash of each file that a point may read, by the name in the sweep. A file that cannot be read counts
+    /// as empty. Points that need this file fail with the reason.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
         let mut inputs = BTreeMap::new();
         for (key, names_file) in KEYS {

@@ -1,8 +1,8 @@
-//! Access to the rows of many files as if they were one file, through an index of points.
+//! Access to the rows of many files as if the rows were in one file, through an index of points.
 //!
 //! The index takes 12 bytes for each point and [`BLOCK`] bytes for each file. Only one file is open at a time. A
-//! thousand shards of a million points take 28 MB. A table for each file would take 8 GB and exceed the number of
-//! files that a process may open.
+//! thousand shards of a million points take 28 MB. A separate table for each file would take 8 GB and exceed the number
+//! of files that a process may open.
 
 use super::points::Points;
 use super::rows::Scan;
@@ -12,32 +12,32 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-/// Bytes read from a file at a time: some tens of rows.
+/// Number of bytes read from a file at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
-/// Error text for a file that can no longer be read.
+/// Error text for a file that was read before and can no longer be read.
 const AGAIN: &str = "cannot be read again";
 
 #[derive(Debug)]
 pub(super) struct Joined {
     header: Header,
     files: Vec<RowBlocks>,
-    /// Number of the file that holds the row of each point, counted from 1. 0 for a point without a row.
+    /// Index of the file that holds the row of each point, counted from 1. The index is 0 for a point without a row.
     holders: Vec<u32>,
-    /// Byte position in that file at which the row of each point begins.
+    /// Byte position at which the row of each point begins in its file.
     places: Vec<u64>,
     failed: Points,
-    /// Points with several equal rows.
+    /// Points that have several equal rows.
     duplicates: Vec<u64>,
 }
 
 impl Joined {
-    /// Indexes the rows of all folders. A folder without a complete header is ignored.
+    /// Builds the index of the rows in all folders. A folder without a complete header is ignored.
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError::Missing`] if no folder holds a row, [`SweepError::Foreign`] if a folder belongs to
-    /// another sweep, and [`SweepError::Contradiction`] if a point has different rows.
+    /// Returns [`SweepError::Missing`] if no folder holds a row, [`SweepError::Foreign`] if a folder belongs to another
+    /// sweep, and [`SweepError::Contradiction`] if a point has different rows.
     pub(super) fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
         let mut joined: Option<Self> = None;
         for folder in folders {
@@ -68,7 +68,7 @@ impl Joined {
         Self { holders: vec![0; points], places: vec![0; points], header, files, failed, duplicates }
     }
 
-    /// Adds a row of the newest file.
+    /// Adds a row of the most recently added file to the index. `byte` is the row's position in the file.
     fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
         let point = row.point as usize;
         // A second row of a point must equal the first.
@@ -89,12 +89,12 @@ impl Joined {
         Ok(())
     }
 
-    /// Returns the data shared by all rows.
+    /// Returns the header: the data shared by all rows.
     pub(super) const fn header(&self) -> &Header {
         &self.header
     }
 
-    /// Returns the points without a row, in order.
+    /// Returns the points without a row, in ascending order.
     pub(super) fn missing(&self) -> Vec<u64> {
         (0..).zip(&self.holders).filter(|(_, holder)| **holder == 0).map(|(point, _)| point).collect()
     }
@@ -104,23 +104,23 @@ impl Joined {
         (0..self.header.points).filter(|point| self.failed.holds(*point)).count() as u64
     }
 
-    /// Returns the points with several equal rows, in order.
+    /// Returns the points that have several equal rows, in ascending order.
     pub(super) fn duplicates(&self) -> &[u64] {
         &self.duplicates
     }
 
-    /// Returns the row of a point, or `None` if the point has no row. `point` must be below the number of points.
+    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)
     }
 }
 
-/// A file of rows that is open only while one of its blocks is read.
+/// Reader of a file of rows in blocks. The file is open only while a block is read.
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// Byte position in the file at which the block begins.
+    /// Byte position in the file at which the current block begins.
     begin: u64,
     block: Vec<u8>,
 }
@@ -130,7 +130,7 @@ impl RowBlocks {
         Self { path, begin: 0, block: Vec::new() }
     }
 
-    /// Returns the row that begins at a byte position. Reading in the order of the file is fastest.
+    /// Returns the row that begins at a byte position. Rows are read fastest in the order of the file.
     fn row_at(&mut self, byte: u64) -> Result<SweepRow, SweepError> {
         if self.line_at(byte).is_none() {
             self.read(byte).map_err(SweepError::io(&self.path, AGAIN))?;
@@ -139,7 +139,7 @@ impl RowBlocks {
         serde_json::from_slice(line).map_err(io::Error::from).map_err(SweepError::io(&self.path, AGAIN))
     }
 
-    /// Returns the line at a byte position if the block holds the complete line.
+    /// Returns the line at a byte position, if the current block holds the complete line.
     fn line_at(&self, byte: u64) -> Option<&[u8]> {
         let begin = usize::try_from(byte.checked_sub(self.begin)?).ok()?;
         let rest = self.block.get(begin..)?;
@@ -147,7 +147,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. The block holds at least one complete line if the file does.
+    /// Reads the block that begins at a byte position. The block is extended until it holds a complete line, if the
+    /// file has one.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;

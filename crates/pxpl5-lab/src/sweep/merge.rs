@@ -1,4 +1,4 @@
-//! Joining the shards of a sweep into one folder.
+//! Merges the shards of a sweep (parts computed by separate processes) into one folder.
 
 use super::joined::Joined;
 use super::replacement::Replacement;
@@ -8,20 +8,21 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Result of joining the shards of a sweep.
+/// Result of merging the shards of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
     /// Number of points of the sweep.
     pub points: u64,
     /// Number of points that could not be simulated.
     pub failed: u64,
-    /// Points that occurred more than once, with equal rows.
+    /// Points that occurred in more than one row. The rows were equal.
     pub duplicates: Vec<u64>,
     /// Points without a row. Empty unless missing points were allowed.
     pub missing: Vec<u64>,
 }
 
-/// Joins the rows of several folders into one folder, in order of the points. Nothing is written after an error.
+/// Merges the rows of several folders into one folder, in ascending order of the points. After an error, nothing is
+/// written.
 ///
 /// # Errors
 ///
@@ -52,14 +53,14 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
     renew_manifest(out)
 }
 
-/// Copies the lines of a folder's times, except the header in the first line.
+/// Copies the lines of a folder's file of durations, except the header in the first line.
 fn put_times(times: &mut Replacement, path: &Path) -> Result<(), SweepError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);
     lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))
 }
 
-/// Formats numbers as at most ten ranges.
+/// Formats a list of numbers as ranges, at most ten.
 fn ranges(numbers: &[u64]) -> String {
     let mut ranges: Vec<(u64, u64)> = Vec::new();
     for number in numbers {

@@ -8,19 +8,19 @@
 //!
 //! # Behaviour
 //!
-//! - The row of a point depends only on the file and the point, not on threads, shards, order or host. Data that
-//!   depend on the host are in times.jsonl.
-//! - Each row is appended by one write when its point is finished. At the end the rows are sorted by their points.
-//!   The bytes of the finished file therefore do not depend on the execution.
-//! - After a crash the last line may be incomplete. [`Store::open`] removes the incomplete line, and only its point
+//! - The row of a point depends only on the file and the point, not on threads, shards, order or host. Data that depend
+//!   on the host are in times.jsonl.
+//! - Each row is appended by one write when its point is finished. At the end the rows are sorted by the number of
+//!   their point. The finished file is therefore the same, byte for byte, for every order of execution.
+//! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only the point of this line
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
 //! - Two processes never write into one folder. The second process is refused.
 //!
 //! # Not modelled
 //!
-//! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only by
-//! shards.
+//! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only if each
+//! runs a different shard (part) of it.
 
 mod chunk;
 mod cost;
@@ -54,7 +54,7 @@ use scenes::Scenes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// An experiment file with a parameter space.
+/// A sweep: an experiment file with a parameter space.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     base: ExperimentFile,
@@ -83,13 +83,13 @@ impl Sweep {
         Ok(Self { base, space, scenes: Arc::default() })
     }
 
-    /// Returns the settings that all points share.
+    /// Returns the settings that all points of the sweep share.
     #[must_use]
     pub const fn base(&self) -> &ExperimentFile {
         &self.base
     }
 
-    /// Returns the folder of the sweep's file, to which names of files are relative.
+    /// Returns the folder of the sweep's file. Relative file names in the settings refer to this folder.
     fn folder(&self) -> PathBuf {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }

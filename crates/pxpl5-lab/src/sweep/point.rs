@@ -1,4 +1,4 @@
-//! Simulation of one point of a sweep.
+//! Simulates one point of a sweep.
 
 use super::Sweep;
 use super::header::json;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// Status of a point.
+/// Result status of a point in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
@@ -20,27 +20,27 @@ pub enum Status {
     Failed,
 }
 
-/// Result of a point, identical on every host.
+/// Results of a point in a sweep, identical on every host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
-    /// Number of the point, from 0, in the order of the space.
+    /// Index of the point in the parameter space, from 0.
     pub point: u64,
     /// Status of the point.
     pub status: Status,
     /// Settings that vary in the sweep, with their values at this point, by key.
     pub parameters: BTreeMap<String, Value>,
-    /// Measured quantities by name. Null if the run does not define the quantity.
+    /// Measured quantities by name. The value is null if the run does not define the quantity.
     pub measured: BTreeMap<String, Option<f64>>,
-    /// Hash of all settings on which the trace depends. Null for an invalid experiment.
+    /// Hash of all settings on which the trace depends. Null if the experiment is invalid.
     pub config_hash: Option<String>,
-    /// Trace hash of all events. Null at a level without events.
+    /// Hash over the trace of all events. Null for a level of modelling without events.
     pub trace_hash: Option<String>,
     /// Reason why the point could not be simulated.
     pub error: Option<String>,
 }
 
 impl Sweep {
-    /// Returns the experiment at a point.
+    /// Returns the checked experiment at a point.
     ///
     /// # Errors
     ///
@@ -53,7 +53,7 @@ impl Sweep {
         file.resolve()
     }
 
-    /// Returns the scene of a point's plan, loaded once for all points that share it.
+    /// Returns the scene of a point's experiment. Each scene is loaded once for all points that share it.
     ///
     /// # Errors
     ///
@@ -62,7 +62,7 @@ impl Sweep {
         self.scenes.scene_of(plan)
     }
 
-    /// Simulates a point. Errors, even panics, become the point's row.
+    /// Simulates a point and returns its row. An error, even a panic, is stored in the row.
     pub(super) fn row(&self, point: u64) -> SweepRow {
         // A panic in one point must not end the sweep.
         let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));

@@ -1,12 +1,12 @@
-//! Replacement of a file by a complete new version.
+//! Replaces a file by a complete new version.
 
 use super::SweepError;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A new version of a file under a temporary name in the same folder. An unfinished replacement is removed when it is
-/// dropped.
+/// A new version of a file, under a temporary name in the same folder. If a replacement is dropped before it is
+/// finished, its temporary file is removed.
 #[derive(Debug)]
 pub(super) struct Replacement {
     path: PathBuf,
@@ -25,7 +25,7 @@ impl Replacement {
         self.writer.write_all(bytes).map_err(SweepError::io(&self.path, "cannot be written"))
     }
 
-    /// Renames the new version to the file's name. The file changes completely or not at all.
+    /// Renames the new version to the name of the file. The file changes completely or not at all.
     pub(super) fn finish(mut self) -> Result<(), SweepError> {
         self.take_place().map_err(SweepError::io(&self.path, "cannot be written"))
     }

@@ -1,4 +1,4 @@
-//! Access to a file of rows through an index of byte positions. Rows are read from the file on request.
+//! Access to a file of result rows through an index of byte positions. A row is read from the file when it is needed.
 
 use super::points::Points;
 use super::{Header, MAX_POINTS, Status, SweepError, SweepRow};
@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Index of a file of rows, with eight bytes for each point and one bit for each failed point.
+/// Index of a file of result rows, with eight bytes for each point and one bit for each failed point.
 #[derive(Debug, Default)]
 pub(super) struct RowFile {
     path: PathBuf,
@@ -21,7 +21,7 @@ pub(super) struct RowFile {
 }
 
 impl RowFile {
-    /// Indexes a file. An incomplete last line is ignored.
+    /// Builds the index of a file. An incomplete last line is ignored.
     pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
         let mut scan = Scan::open(path)?;
         let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
@@ -32,7 +32,7 @@ impl RowFile {
         Ok(found)
     }
 
-    /// Indexes a file, or returns an empty index if the file does not exist.
+    /// Builds the index of a file. The index is empty if the file does not exist.
     pub(super) fn open_or_none(path: &Path) -> Result<Self, SweepError> {
         match path.try_exists() {
             Ok(false) => Ok(Self { path: path.to_owned(), ..Self::default() }),
@@ -85,7 +85,7 @@ impl RowFile {
         self.failed.holds(point)
     }
 
-    /// Returns the points with a row, in order.
+    /// Returns the points that have a row, in ascending order.
     pub(super) fn points(&self) -> impl Iterator<Item = u64> {
         (0..).zip(&self.places).filter(|(_, place)| **place > 0).map(|(point, _)| point)
     }
@@ -95,7 +95,7 @@ impl RowFile {
         place.copied().filter(|place| *place > 0)
     }
 
-    /// Opens the file again to read rows that the index contains.
+    /// Opens the file again to read rows at the positions in the index.
     pub(super) fn reader(&self) -> Result<RowReader<'_>, SweepError> {
         let file = File::open(&self.path).map_err(SweepError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
@@ -108,12 +108,12 @@ pub(super) struct Scan {
     path: PathBuf,
     file: BufReader<File>,
     text: Vec<u8>,
-    /// Number of the last line read, from 1.
+    /// Number of the last line that was read, counted from 1.
     line: usize,
     points: u64,
     /// Header of the file. `None` if the file does not contain a complete header.
     pub(super) header: Option<Header>,
-    /// Length in bytes up to the end of the last complete line read.
+    /// Length in bytes up to the end of the last complete line that was read.
     pub(super) whole_bytes: u64,
 }
 
@@ -169,17 +169,17 @@ impl Scan {
     }
 }
 
-/// Random-access reader of rows. Reading in the order of the file is fastest.
+/// Random-access reader of result rows. Rows are read fastest in the order of the file.
 #[derive(Debug)]
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position of the next read.
+    /// Byte position at which the next read begins.
     at: u64,
 }
 
 impl RowReader<'_> {
-    /// Returns the row of a point, or `None` if the file has none.
+    /// Returns the row of a point, or `None` if the file has no row for the point.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
         let row = self.row_at(place).map_err(SweepError::io(&self.rows.path, "cannot be read again"))?;

@@ -11,22 +11,21 @@ use std::time::Instant;
 /// Options for running a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunOptions {
-    /// Shard of the sweep to run.
+    /// Shard (part) of the sweep to run.
     pub shard: Shard,
-    /// Number of points simulated in parallel.
+    /// Number of points that are simulated in parallel.
     pub threads: usize,
 }
 
-/// Maximum number of rows that wait to be written. More rows would only be lost after a crash.
+/// Maximum number of finished rows that wait to be written. A crash loses the waiting rows.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard that the store does not hold yet. `finished` is called with every row after it is
-/// stored.
+/// Simulates the points of a shard for which the store has no row yet. `finished` is called with every row after the
+/// row is stored.
 ///
 /// # Errors
 ///
-/// Returns [`SweepError::Io`] if a row cannot be stored. Points in progress are then finished, and their rows are
-/// lost.
+/// Returns [`SweepError::Io`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
 pub fn run(
     sweep: &Sweep,
     store: &mut Store,
@@ -61,19 +60,19 @@ pub fn run(
     })
 }
 
-/// Work shared by all threads: each thread takes one missing point at a time.
+/// Work shared by all threads of a sweep. Each thread takes one unfinished point at a time.
 struct Work<'a> {
     sweep: &'a Sweep,
     shard: Shard,
     /// Points that were finished before this run.
     finished: Points,
-    /// Number of the next point to take.
+    /// Index of the next point to take.
     next: AtomicU64,
     stop: AtomicBool,
 }
 
 impl Work<'_> {
-    /// Simulates points on one thread, until no more are left or the rows are no longer accepted.
+    /// Simulates points on one thread, until no point is left or the receiver of the rows has closed.
     fn run(&self, rows: Sender<(SweepRow, f64)>) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
@@ -85,7 +84,7 @@ impl Work<'_> {
         }
     }
 
-    /// Takes the next point of the shard that is neither finished nor taken. Returns `None` if no more are left.
+    /// Takes the next point of the shard that is neither finished nor taken. Returns `None` if no point is left.
     fn take(&self) -> Option<u64> {
         let all = self.sweep.space().points();
         let mut taken =

@@ -1,19 +1,19 @@
-//! A cache of scenes that points share.
+//! A cache of the scenes that points of a sweep share.
 
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_scene::{Placement, Scene};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Loaded scenes by key. Most points of a sweep share one scene.
+/// Loaded scenes by cache key. Most points of a sweep share one scene.
 #[derive(Debug, Default)]
 pub(super) struct Scenes(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
 
-/// Cache key of a scene: its name, true if it is placed as in its file, and true if its back faces are dropped.
+/// Cache key of a scene: its name, true if a model file keeps its own coordinates, and true if back faces are removed.
 type SceneKey = (String, bool, bool);
 
 impl Scenes {
-    /// Returns the scene of a plan, loaded once for all points that share it.
+    /// Returns the scene of a plan. Each scene is loaded once for all points that share it.
     pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         // The lock is held while loading, so that no other thread loads the same scene.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,6 +1,6 @@
-//! Division of a sweep into disjoint shards.
+//! Divides a sweep into disjoint shards, which separate processes can compute.
 
-/// A shard of a sweep: the points whose number has the remainder `index` after division by `of`.
+/// A shard (part) of a sweep: the points whose index has the remainder `index` after division by `of`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: u64,
@@ -23,13 +23,13 @@ impl Shard {
         self.index + 1
     }
 
-    /// Returns the number of all shards.
+    /// Returns the number of shards into which the sweep is divided.
     #[must_use]
     pub const fn of(self) -> u64 {
         self.of
     }
 
-    /// Returns the number of points of this shard among the first `points` points.
+    /// Returns the number of points of this shard among the first `points` points of the sweep.
     #[must_use]
     pub const fn share_of(&self, points: u64) -> u64 {
         (points + self.of - 1 - self.index) / self.of

@@ -1,18 +1,18 @@
-//! The parameter space of a sweep: axes of values, and points by number.
+//! The parameter space of a sweep: axes of values, and points by index.
 
 use crate::experiment_file::{ExperimentFile, FileError, Setting};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// Maximum number of points of a sweep. Assumed: the rows fill a folder of some gigabytes.
+/// Maximum number of points of a sweep. Assumed, because the rows of so many points fill some gigabytes.
 pub const MAX_POINTS: u64 = 10_000_000;
 
-/// An axis of the space: settings that change together, with their values in order.
+/// An axis of a parameter space: settings that change together, with their values in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// Values of each key. All lists have the same length.
+    /// Values of each key along the axis. All lists have the same length.
     pub values: Vec<Values>,
 }
 
@@ -21,7 +21,7 @@ impl Axis {
         Self { paths: vec![path], values: vec![values] }
     }
 
-    /// Returns the number of steps.
+    /// Returns the number of steps of the axis.
     #[must_use]
     pub fn len(&self) -> u64 {
         self.values.first().map_or(0, Values::len)
@@ -40,10 +40,10 @@ impl Axis {
     }
 }
 
-/// Values of a setting in order. A range does not store its values.
+/// Values of one setting in order. A range stores only three numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Values listed in the file.
+    /// Values as listed in the sweep's file.
     Listed(Vec<Value>),
     /// A range of whole numbers.
     Range {
@@ -118,13 +118,13 @@ impl SweepSpace {
         Ok(Self { axes, points })
     }
 
-    /// Returns the axes. The last axis changes fastest.
+    /// Returns the axes of the space. The last axis changes fastest from point to point.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// Returns the number of points: the product of the numbers of steps.
+    /// Returns the number of points: the product of the axes' numbers of steps.
     #[must_use]
     pub const fn points(&self) -> u64 {
         self.points
@@ -145,14 +145,14 @@ impl SweepSpace {
     }
 }
 
-/// Builder of errors that state a key's place in the file.
+/// Builder of error messages that state the place of a key in the sweep's file.
 struct Fault<'a> {
     sweep: &'a Setting,
     places: &'a BTreeMap<String, String>,
 }
 
 impl Fault<'_> {
-    /// Returns the place of a key: its path in the file, or the setting that an axis varies.
+    /// Returns the place of a key for an error message: its path in the file, or the setting that an axis varies.
     fn place(&self, key: &str) -> String {
         let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
         paths.iter().find_map(|path| self.places.get(path)).unwrap_or(&self.sweep.place).clone()
@@ -199,7 +199,7 @@ impl Fault<'_> {
         Ok(Values::Range { from, step, count })
     }
 
-    /// Returns an axis of lists with equal lengths that change together.
+    /// Returns an axis whose lists of values change together. All lists must have the same length.
     fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
@@ -224,7 +224,7 @@ impl Fault<'_> {
         Ok(Some(Axis::of_one("seed".to_owned(), Values::Range { from: 1, step: 1, count: count as u64 })))
     }
 
-    /// Checks that every path is a key, and that no two axes set the same key.
+    /// Checks that every path of the axes is a key of the file, and that no two axes set the same key.
     fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), FileError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
@@ -240,7 +240,7 @@ impl Fault<'_> {
     }
 }
 
-/// Returns the first value of a range, the step, and the number of values after the first.
+/// Parses a range. Returns its first value, its step, and the number of values after the first.
 fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     let from = range.get("from")?.as_integer()?;
     let to = range.get("to")?.as_integer()?;
@@ -250,8 +250,8 @@ fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     Some([from, step, length / step])
 }
 
-/// Flattens a table into paths and values. A table with the key `from` is a range and stays a value; every other
-/// table adds a part to the path.
+/// Flattens a table into paths and values. A table with the key `from` is a range and stays one value. The key of any
+/// other table becomes part of the path.
 fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

@@ -1,4 +1,5 @@
-//! The folder of a sweep. Each row is appended by one write, so finished rows survive a crash at any moment.
+//! The folder of a sweep, with one row of results for each simulated point. Each row is appended by one write, so
+//! finished rows survive a crash at any moment.
 
 use super::points::Points;
 use super::replacement::Replacement;
@@ -12,31 +13,31 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the file of rows: a header line, then one line for each row.
+/// Name of the file of result rows: a header line, then one line for each point.
 pub const ROWS_FILE: &str = "rows.jsonl";
-/// Name of the file of times: the header line, then one line for each point with its duration on this host.
+/// Name of the file of durations: the header line, then one line for each point with its duration on the host.
 pub const TIMES_FILE: &str = "times.jsonl";
-/// Name of the table of rows as comma-separated values.
+/// Name of the file that holds the rows as a table of comma-separated values.
 pub const RESULTS_FILE: &str = "results.csv";
 const LOCK_FILE: &str = ".lock";
 
-/// The rows of a sweep in one folder.
+/// The rows of results of a sweep, stored in one folder.
 #[derive(Debug)]
 pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Byte position at which the next row begins.
+    /// Byte position in the file of rows at which the next row begins.
     end: u64,
     rows_file: File,
     times_file: File,
-    /// True after a row was appended. Plots and pages of fewer rows have then been removed.
+    /// True after a row was appended. Plots and pages that were made from fewer rows have then been removed.
     is_renewed: bool,
-    /// Lock of the folder, held for the lifetime of the store. The operating system releases the lock after a crash.
+    /// Lock of the folder, held as long as the store exists. The operating system releases the lock after a crash.
     _lock: File,
 }
 
-/// Duration of a point on this host, as written to the file of times.
+/// Duration of a point on the host, as written to the file of durations.
 #[derive(Serialize)]
 struct PointTime {
     point: u64,
@@ -44,13 +45,17 @@ struct PointTime {
 }
 
 impl Store {
-    /// Opens a folder, or creates it. An incomplete last line is removed. Finished points are kept if `resume` is
-    /// true.
+    /// Opens or creates the folder of a sweep. An incomplete last line is removed. Finished points are kept if `resume`
+    /// is true.
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError`] if the folder cannot be read or written, is in use, or has a damaged line before the
-    /// last. Also fails if the folder holds results of another sweep, or finished points although `resume` is false.
+    /// Returns [`SweepError`] in these cases:
+    ///
+    /// - The folder cannot be read or written, or is in use.
+    /// - A line before the last is damaged.
+    /// - The folder holds results of another sweep.
+    /// - The folder holds finished points although `resume` is false.
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         check_command(folder)?;
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
@@ -87,7 +92,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Returns true if a point is finished.
+    /// Returns true if the folder has a row for this point.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
@@ -98,18 +103,18 @@ impl Store {
         self.rows.points().collect()
     }
 
-    /// Returns the number of finished points of a shard.
+    /// Returns the number of finished points in one shard (part of the sweep for one process).
     #[must_use]
     pub fn finished(&self, shard: Shard) -> u64 {
         self.rows.points().filter(|point| shard.holds(*point)).count() as u64
     }
 
-    /// Returns the points of a shard that could not be simulated, in order.
+    /// Returns the points of a shard (part of the sweep) that could not be simulated, in ascending order.
     pub fn failed(&self, shard: Shard) -> impl Iterator<Item = u64> {
         self.rows.points().filter(move |point| shard.holds(*point) && self.rows.is_failed(*point))
     }
 
-    /// Reads the row of a point from the file. Returns `None` if the point is not finished.
+    /// Reads the row of a point from its file. Returns `None` if the point is not finished.
     ///
     /// # Errors
     ///
@@ -118,7 +123,7 @@ impl Store {
         self.rows.reader()?.row(point)
     }
 
-    /// Appends the row of a finished point, and the seconds that the point took.
+    /// Appends the row of a finished point, and the time in seconds that the point took on the host.
     ///
     /// # Errors
     ///
@@ -136,7 +141,7 @@ impl Store {
         Ok(())
     }
 
-    /// Appends a line by one write, so that a crash leaves at most this line incomplete.
+    /// Appends a line to the file of rows by one write. A crash can leave at most this line incomplete.
     fn append_line(&mut self, line: &str) -> Result<(), SweepError> {
         let path = self.folder.join(ROWS_FILE);
         self.rows_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))?;
@@ -149,7 +154,8 @@ impl Store {
         self.times_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))
     }
 
-    /// Sorts the rows by their points and writes the table. The file changes completely or not at all.
+    /// Sorts the rows by the number of their point, and writes the table. The file of rows changes completely or not at
+    /// all.
     ///
     /// # Errors
     ///
@@ -161,7 +167,7 @@ impl Store {
     }
 }
 
-/// Refuses a folder that holds files of another command.
+/// Returns an error if the folder holds files of another command.
 pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
@@ -172,7 +178,7 @@ pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
     }
 }
 
-/// Rewrites the manifest with only the files of the sweep. Plots and pages made from fewer rows are removed.
+/// Rewrites the folder's manifest with only the files of the sweep. Plots and pages made from fewer rows are removed.
 pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
     let mut manifest = Manifest::new(Manifest::SWEEP);
     [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
@@ -184,7 +190,7 @@ pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
     Ok(())
 }
 
-/// Writes the rows in order, and the table. Only one row is in memory at a time.
+/// Writes the rows in ascending order of their points, and the table. Only one row is in memory at a time.
 pub(super) fn write_all(
     folder: &Path,
     header: &Header,
@@ -205,8 +211,7 @@ pub(super) fn write_all(
     results.finish()
 }
 
-/// Removes temporary files that processes left behind when they were killed. The folder is locked, so no other
-/// process uses these files.
+/// Removes temporary files of processes that were killed. The folder is locked, so no other process uses these files.
 fn remove_leftover_files(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -239,7 +244,7 @@ fn lock(folder: &Path) -> Result<File, SweepError> {
     }
 }
 
-/// Opens a file for appending after its first `keep` bytes.
+/// Opens a file for appending. Bytes after the first `keep` bytes are removed.
 fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
     let cut = file.and_then(|file| {

@@ -1,8 +1,8 @@
-//! Conversion of rows to comma-separated values.
+//! Converts rows of a sweep to comma-separated values.
 
 use super::{Header, Status, SweepRow};
 
-/// Columns of the table: the settings that differ between points, and the measured quantities.
+/// Table of a sweep. Its columns are the settings that differ between points, and the measured quantities.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     parameters: Vec<&'a str>,
@@ -17,7 +17,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns the line of column names. The origin of the rows is in the header of `rows.jsonl`.
+    /// Returns the line of column names. The data that reproduce the rows are in the header of `rows.jsonl`.
     pub(super) fn head(&self) -> Vec<u8> {
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);
@@ -35,7 +35,7 @@ impl<'a> Table<'a> {
 }
 
 impl SweepRow {
-    /// Returns the value of a quantity as text, or an empty text if the run does not define the quantity.
+    /// Returns the value of a quantity as text. The text is empty if the run does not define the quantity.
     fn value_text(&self, name: &str) -> String {
         self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())
     }
@@ -45,7 +45,7 @@ fn plain(value: &serde_json::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Returns a line of comma-separated cells. Writing to memory cannot fail.
+/// Returns a line of comma-separated cells.
 fn line_of_cells(cells: impl Iterator<Item = String>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let _ = writer.write_record(cells);
