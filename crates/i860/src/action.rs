@@ -1,51 +1,52 @@
-//! Effects of instructions and pairs, chosen once at decoding, with operands in one form. Execution reads no
-//! instruction bit again.
+//! Effects of instructions and pairs. Each effect is chosen once, at decoding, so execution does not look at
+//! instruction bits again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// The effect of a core half: loads, stores, integer arithmetic. Branches and control-register moves read their
-/// instruction instead.
+/// The effect of a core instruction: load, store or integer operation. Branches and control-register moves are executed
+/// from the instruction itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
     pub(crate) op: Op,
     pub(crate) dest: u8,
-    /// First source register; r0 if the first operand is an immediate.
+    /// Number of the first source register, or r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// Register that receives the address of an access; r0 without auto-increment.
+    /// Number of the register that receives the address of an access, or r0 without auto-increment.
     pub(crate) increments: u8,
-    /// Added to the first register: the immediate, or 0.
+    /// Immediate operand or address displacement, which is added to the first source register. 0 if there is none.
     pub(crate) immediate: u32,
 }
 
-/// The kinds of effect of a core half.
+/// The kinds of effect that a core instruction can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Core {
     Nothing,
-    /// Arithmetic, logic or a shift.
+    /// An arithmetic operation, a logical operation or a shift.
     Integer,
-    /// Loads and stores of an integer register, by size.
+    /// Loads one byte into an integer register.
     LoadByte,
     LoadShort,
     LoadLong,
     StoreByte,
     StoreShort,
     StoreLong,
-    /// Loads and stores of one, two or four floating-point registers.
+    /// Loads one floating-point register.
     LoadSingle,
     LoadDouble,
     LoadQuad,
     StoreSingle,
     StoreDouble,
     StoreQuad,
-    /// Pipelined loads of one or two floating-point registers.
+    /// Loads one floating-point register through the load pipe.
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// Control-register moves, `flush`, `trap`, `lock` and others, which read their instruction.
+    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. They are executed from
+    /// the instruction itself.
     System,
     Branch,
 }
@@ -95,7 +96,7 @@ impl CoreAction {
     }
 }
 
-/// The effect of a floating-point half.
+/// The effect of a floating-point instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FloatingAction {
     pub(crate) does: Floating,
@@ -104,31 +105,31 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// The kinds of effect of a floating-point half: first those that read singles, then those that read doubles.
-/// In the specialized kinds no result that leaves a pipe can be a source of the same instruction.
+/// The kinds of effect that a floating-point instruction can have. Kinds that read singles come first, then kinds that
+/// read doubles. The specialized kinds assume that a result leaving a pipe is no source of the same instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
-    /// Pipelined operations on singles.
+    /// Pipelined multiplication of two single-precision operands.
     PipelinedMultiply,
     PipelinedAdd,
     PipelinedSubtract,
-    /// Scalar operations on singles.
+    /// Scalar multiplication of two single-precision operands.
     Multiply,
     Add,
     Subtract,
-    /// Other operations that read two singles.
+    /// Any other operation that reads two single-precision operands.
     Singles,
-    /// Pipelined operations on doubles.
+    /// Pipelined multiplication of two double-precision operands.
     PipelinedMultiplyDoubles,
     PipelinedAddDoubles,
     PipelinedSubtractDoubles,
-    /// Scalar operations on doubles.
+    /// Scalar multiplication of two double-precision operands.
     MultiplyDoubles,
     AddDoubles,
     SubtractDoubles,
-    /// Other operations that read two doubles.
+    /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Operations with mixed precisions, or with a source that is the result leaving the pipe.
+    /// Any operation with mixed precisions, or with a source that may be the result leaving the pipe.
     Any,
     Nothing,
 }
@@ -175,7 +176,7 @@ impl Floating {
     }
 }
 
-/// The effects of an instruction, or of both halves of a pair.
+/// The effects of a single instruction, or of both halves of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
@@ -185,7 +186,7 @@ pub(crate) struct Action {
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair if `second` is its core half.
+    /// Chooses the effects of a single instruction. With `second`, the core half, chooses those of a pair.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

@@ -64,7 +64,7 @@ pub(crate) fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
     }
 }
 
-/// Converts a single to a double, as bit patterns.
+/// Converts a single-precision number to double precision. Operand and result are bit patterns.
 #[inline]
 pub(crate) fn widen(bits: u32) -> u64 {
     let value = f32::from_bits(bits);
@@ -77,7 +77,8 @@ fn widen_nan(bits: u32) -> u64 {
     sign | 0x7FF0_0000_0000_0000 | u64::from(bits & 0x007F_FFFF) << 29 | QUIET64
 }
 
-/// Converts a double to a single, rounded to nearest even, as bit patterns.
+/// Converts a double-precision number to single precision, rounded to nearest even. Operand and result are bit
+/// patterns.
 #[inline]
 pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     let value = f64::from_bits(bits);
@@ -88,7 +89,8 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
 }
 
-/// Computes one operation with the precisions of an instruction's S and R bits. Operands are in source precision.
+/// Computes one floating-point operation. `source` and `result` are the S and R bits, which select double precision for
+/// the operands and the result.
 #[inline]
 pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {
@@ -100,7 +102,7 @@ pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result
     PipeStage { bits, double: true }
 }
 
-/// Converts a value of a pipe to the precision in which it is read.
+/// Converts a value from a pipe to the precision in which an instruction reads it.
 #[inline]
 pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {
@@ -110,7 +112,7 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// Rounds as fsr.RM selects: to nearest even, down, up, towards zero.
+/// Rounds to an integer as `mode`, the field fsr.RM, selects: to nearest even, down, up, or towards zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),
@@ -120,13 +122,13 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps on values out of range; here the value
-/// saturates, and NaN gives 0.
+/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps on values out of range. This model
+/// returns the nearest representable value, and 0 for NaN.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }
 
-/// Returns the low 53 bits of the product of two fraction fields.
+/// Returns the low 53 bits of the product of two significands, as `fmlow` does.
 pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
     const FRACTION: u64 = (1 << 53) - 1;
     (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION

@@ -2,17 +2,17 @@
 
 use std::fmt;
 
-/// The failure of an access that no memory or device answers.
+/// The failure of an access to an address at which no memory or device answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no memory and no device answers")]
 pub struct Unmapped;
 
-/// Memory and devices as the processor sees them: little-endian, physical byte addresses.
+/// The memory and devices that the processor can access, by physical byte addresses. Data are little-endian.
 ///
 /// The processor checks the alignment first, so an address is always a multiple of the access size. A 16-byte access
 /// arrives as two accesses of 8 bytes.
 pub trait Bus {
-    /// Reads `size` (1, 2, 4 or 8) bytes at `address`, zero-extended.
+    /// Reads `size` bytes (1, 2, 4 or 8) at `address`. The result is extended with zeros.
     ///
     /// # Errors
     /// [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
@@ -24,13 +24,14 @@ pub trait Bus {
     /// [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
-    /// Returns true if the caches may hold the line of `address` (the KEN# pin). Devices return false.
+    /// Returns true if the caches can hold the line of `address` (the KEN# pin). Must be false for addresses of
+    /// devices.
     fn is_cacheable(&self, _address: u32) -> bool {
         true
     }
 }
 
-/// Plain memory from a base address.
+/// Memory for a range of addresses.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Ram {
     base: u32,
@@ -38,19 +39,19 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// Makes a memory of `len` zero bytes from address `base`.
+    /// Makes a memory of `len` zero bytes that begins at address `base`.
     #[must_use]
     pub fn new(base: u32, len: usize) -> Ram {
         Ram { base, bytes: vec![0; len] }
     }
 
-    /// Returns the contents, lowest address first.
+    /// Returns all bytes of the memory, the lowest address first.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Copies `bytes` to `address`.
+    /// Copies `bytes` to memory at `address`.
     ///
     /// # Errors
     /// [`Unmapped`] if the bytes do not fit. Nothing is written then.
@@ -60,7 +61,7 @@ impl Ram {
         Ok(())
     }
 
-    /// Copies 32-bit words to `address`.
+    /// Copies 32-bit words to memory at `address`.
     ///
     /// # Errors
     /// [`Unmapped`] if the words do not fit. Nothing is written then.

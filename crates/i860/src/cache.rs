@@ -1,18 +1,18 @@
-//! Tag arrays of the caches and the TLB. Data always come from memory; the arrays decide only hits, misses and
-//! write-backs.
+//! Tag arrays of the caches and the TLB. Data always come from memory; the tag arrays only decide between hit, miss and
+//! write-back.
 
 use crate::timing::ChipSizes;
 
-/// A set-associative tag array with pseudo-random replacement. All sizes are powers of two.
+/// A set-associative tag array with pseudo-random replacement. All its sizes are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
-    /// Line addresses with [`VALID`] and [`DIRTY`] in their low bits; 0 for an empty way.
+    /// Tags of all sets. A tag is a line address with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an empty way.
     sets: Box<[[u32; WAYS]; SETS]>,
-    /// Number of fills and clears so far. While it is unchanged, the array holds the same lines.
+    /// Number of fills and clears so far. While this number stays the same, the array holds the same lines.
     changes: u64,
 }
 
-/// Low bits of a tag.
+/// Flag in the low bits of a tag: the way holds a line.
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
@@ -39,7 +39,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the change counter above `latest`, so that the counter differs from all earlier states.
+    /// Raises the number of changes above `latest`. The number then differs from the numbers of all earlier states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -49,19 +49,19 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag of a clean line.
+    /// Returns the tag of a line that is held and clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Returns true if the array holds an address.
+    /// Returns true if the array holds the line of an address.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
     }
 
-    /// Returns true if the array holds an address, and marks its line dirty if `stores` is true.
+    /// Returns true if the array holds the line of an address. If `stores` is true, the line is marked dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         let ways = &mut self.sets[Self::set(address)];
@@ -77,8 +77,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         false
     }
 
-    /// Adds the line of an address, in an empty way if there is one, else in the way chosen by `random`.
-    /// Returns the address of a dirty line that was replaced.
+    /// Adds the line of an address. The line goes into an empty way, or else into the way chosen by `random`. Returns
+    /// the address of a dirty line that was replaced.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];
@@ -88,7 +88,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))
     }
 
-    /// Makes a held line clean. Returns true if it was dirty.
+    /// Marks the line of an address clean, if the array holds it. Returns true if the line was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
         let dirty = Self::tag(address) | DIRTY;
         let way = self.sets[Self::set(address)].iter_mut().find(|held| **held == dirty);
@@ -101,7 +101,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 }
 
-/// A 16-bit maximal-length shift register, the pseudo-random source of the replacement.
+/// A 16-bit maximal-length shift register. Its pseudo-random numbers choose the cache lines to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chance(u16);
 

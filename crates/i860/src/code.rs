@@ -1,39 +1,39 @@
-//! Decoded code: basic blocks by address, and the words of memory that they were decoded from.
+//! Decoded code: basic blocks by address, and the set of decoded words.
 
 use crate::assembler::Program;
 use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Size of the host's table of decoded blocks; unrelated to the processor's instruction cache.
+/// Number of entries in the host's table of decoded blocks. The processor's instruction cache has another size.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {
     (pc >> 2) as usize % BLOCKS
 }
 
-/// The decoded part of the code in memory.
+/// The decoded basic blocks of the code in memory.
 #[derive(Debug)]
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// True if decoded code was forgotten because the memory may have changed.
+    /// True if decoded blocks were discarded because memory may have changed.
     changed: bool,
 }
 
 impl Code {
-    /// Makes an empty store for code that comes from no assembled program.
+    /// Makes an empty store of decoded blocks, for code that does not come from an assembled program.
     pub(crate) fn new() -> Code {
         Code { blocks: Box::default(), words: CodeMap::new(0..0), changed: false }
     }
 
-    /// Makes an empty store for the code of a program.
+    /// Makes an empty store of decoded blocks for the code of a program.
     pub(crate) fn of(program: &Program) -> Code {
         let end = program.base.saturating_add(program.bytes.len() as u32);
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Removes and returns the block that begins at an address in a mode, if it was decoded.
+    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`, if it was decoded.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
@@ -54,7 +54,7 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Forgets all blocks, because the memory may have changed.
+    /// Discards all decoded blocks, because memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();

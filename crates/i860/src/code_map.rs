@@ -1,17 +1,17 @@
-//! The set of words of memory that were decoded.
+//! The set of memory words that were decoded.
 
 use std::ops::Range;
 
-/// The set of decoded words, so that a store into them is noticed.
+/// The set of memory words that were decoded. The set shows whether a store changes decoded code.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
-    /// Addresses of the assembled program; empty without one.
+    /// Address range of the assembled program, or an empty range without a program.
     program: Range<u32>,
     /// True if a store has changed a word of the program.
     is_stored_to: bool,
-    /// Lowest and highest address of the program and of the decoded words.
+    /// Lowest and highest address of the program and all decoded words.
     range: (u32, u32),
-    /// One bit for each word, by its number modulo [`CodeMap::BITS`].
+    /// Set of decoded words. Word `n` of memory is bit `n` modulo [`CodeMap::BITS`], so several words share one bit.
     words: Box<[u64]>,
 }
 
@@ -23,7 +23,7 @@ impl CodeMap {
         CodeMap { program, is_stored_to: false, range, words: Box::default() }
     }
 
-    /// Returns the lowest and highest address of a range.
+    /// Returns the lowest and the highest address in a range.
     fn ends(program: &Range<u32>) -> (u32, u32) {
         if program.is_empty() { (u32::MAX, 0) } else { (program.start, program.end - 1) }
     }
@@ -42,7 +42,7 @@ impl CodeMap {
         self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
     }
 
-    /// Records a store. Returns true if some of its bytes may have been decoded.
+    /// Records a store. Returns true if a stored byte can belong to a decoded word.
     #[inline]
     pub(crate) fn note_store(&mut self, address: u32, size: u32) -> bool {
         let last = address.wrapping_add(size - 1);

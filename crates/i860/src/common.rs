@@ -8,20 +8,21 @@ use crate::timing::{Config, Freeze};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Common {
-    /// Current clock since reset.
+    /// The current clock, counted since reset.
     pub(crate) now: u64,
-    /// Clock at which the profile was started. Every later clock is a freeze or an issue.
+    /// Clock at which the profile was started. Every clock since then is either a freeze or an issue.
     profile_start: u64,
-    /// All counts except issue clocks, which [`Common::profile`] computes from the other clocks.
+    /// All counts of the profile except issue clocks. [`Common::profile`] computes these from the other clocks.
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
-    /// Chooses the line that is replaced in a full set.
+    /// Pseudo-random numbers that choose the line to replace in a full cache set.
     pub(crate) chance: Chance,
-    /// End of the latest data-line fill, as a clock. An instruction miss that begins earlier waits longer.
+    /// Clock at which the latest line fill of the data cache ends. An instruction-cache miss that begins earlier waits
+    /// longer.
     pub(crate) data_fill_end: u64,
-    /// End of the latest instruction-line fill, as a clock. A freeze that begins earlier lasts at least until this
-    /// clock.
+    /// Clock at which the latest line fill of the instruction cache ends. A freeze that begins earlier lasts at least
+    /// until this clock.
     pub(crate) instruction_fill_end: u64,
 }
 
@@ -56,7 +57,8 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Freezes the processor until a clock, and also for the rest of an arriving instruction line (row 1).
+    /// Freezes the processor until clock `until`. If an instruction-cache line is arriving, the freeze also lasts until
+    /// its end (row 1).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -68,19 +70,19 @@ impl Common {
         }
     }
 
-    /// Freezes the processor until an instruction arrives. This wait belongs to row 1a alone.
+    /// Freezes the processor until an instruction arrives at clock `until`. Only row 1a is charged.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the extra clocks of an instruction miss during a data fill (row 1b).
+    /// Freezes the processor for the additional clocks of an instruction-cache miss during a data-cache fill (row 1b).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
     }
 
-    /// Returns true if an instruction line is still arriving.
+    /// Returns true if an instruction-cache line is still arriving.
     #[inline]
     pub(crate) fn is_filling(&self) -> bool {
         self.now < self.instruction_fill_end
@@ -94,19 +96,19 @@ impl Common {
         }
     }
 
-    /// Freezes the processor for the constant part of a row.
+    /// Freezes the processor for the constant part of a freeze row's cost.
     #[inline]
     pub(crate) fn charge(&mut self, why: Freeze) {
         self.freeze_until(self.now + self.costs.clocks(why), why);
     }
 
-    /// Reads `beats` transfers of 8 bytes for the data side after the address pipe has room.
+    /// Reads `beats` transfers of 8 bytes for the data cache. The read starts when the bus's address pipe has room.
     pub(crate) fn read_data(&mut self, address: u32, beats: u32) -> Transfer {
         self.await_address_pipe();
         self.bus.read(self.now, address, beats)
     }
 
-    /// Freezes the processor while three bus requests are outstanding.
+    /// Freezes the processor as long as three bus requests are outstanding.
     pub(crate) fn await_address_pipe(&mut self) {
         if self.costs.applies(Freeze::AddressPipeFull) {
             self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);

@@ -1,4 +1,4 @@
-//! Execution of branches and trap instructions, and of the core half of pairs.
+//! Execution of branches and trap instructions, and dispatch of core instructions.
 
 use crate::action::{Core, CoreAction};
 use crate::block::Unit;
@@ -19,8 +19,8 @@ fn delayed(taken: bool, target: u32) -> Flow {
     if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
-/// Returns the address after a branch's delay slot. The slot is a pair if the code after the branch is in
-/// dual-instruction mode.
+/// Returns the address of the instruction after a branch's delay slot. If the code after the branch is in
+/// dual-instruction mode, the slot is a pair.
 fn after_slot_address(unit: &Unit) -> u32 {
     unit.core_pc().wrapping_add(if unit.after.is_dual() { 12 } else { 8 })
 }
@@ -110,7 +110,7 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Executes `bla`: branches if LCC was set, then sets LCC if the sum of the operands is not negative.
+    /// Executes `bla`: branches if LCC was set. Then LCC is set if the sum of the operands is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);
@@ -121,7 +121,8 @@ impl Cpu {
         if taken { Flow::Delayed(target) } else { Flow::Next }
     }
 
-    /// Executes `bri`, which also returns from a trap: while a trap bit is set, it restores U, IM and the pairing mode.
+    /// Executes `bri`, an indirect branch. If a trap bit is set, `bri` also returns from the trap and restores U, IM
+    /// and the pairing mode.
     fn branch_indirect(&mut self, i: &Instruction) -> Flow {
         let target = self.state.r(i.src1);
         if self.state.psr & psr::TRAPS != 0 {

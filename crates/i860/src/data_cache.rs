@@ -1,4 +1,4 @@
-//! The data cache: held and dirty lines, fills, and write-backs of replaced lines.
+//! The data cache: its lines, fills, and write-backs of replaced dirty lines.
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
@@ -9,7 +9,7 @@ use crate::store_pipe::StorePipe;
 use crate::timing::ChipSizes;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Bus transfers of one cache line.
+/// Number of bus transfers that fill one cache line.
 const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
@@ -29,10 +29,9 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the end of the accesses that hit, from access number `from` to the first one of instruction or pair number
-    /// `limit`.
-    /// Returns the number of the first other access, and the index of its instruction or pair if the access misses.
-    /// Stores that hit mark their lines dirty.
+    /// Finds the first access that is not a cache hit. The search begins at access `from` and ends before instruction
+    /// or pair `limit`. Returns the index of the access at which the search ended. If this access is not a hit, the
+    /// index of its instruction or pair is returned too. Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,
@@ -62,13 +61,13 @@ impl DataCache {
         (next, None)
     }
 
-    /// Returns true if an access hits. The line becomes dirty if the access is a store.
+    /// Returns true if the cache holds the line of an access. If the access is a store, the line becomes dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         self.0.access(address, stores)
     }
 
-    /// Fetches the `size` bytes of a load from memory; returns `None` if they hit.
+    /// Starts a bus transfer for the `size` bytes of a load. Returns `None` if the cache holds the bytes.
     #[inline]
     pub(crate) fn load<B: Bus>(
         &mut self,
@@ -90,7 +89,8 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Fills a line, the needed word first. A dirty line that it replaces is written back afterwards.
+    /// Fills a cache line, the requested bytes first. If the fill replaces a dirty line, this line is written back
+    /// afterwards.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);
@@ -102,7 +102,7 @@ impl DataCache {
         transfer
     }
 
-    /// Writes a line back if it is dirty.
+    /// Writes the cache line of an address back to memory if it is dirty.
     pub(crate) fn flush(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) {
         if self.0.clean(address) {
             stores.write_back(common.now, address, common);

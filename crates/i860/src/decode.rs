@@ -3,7 +3,7 @@
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
 
-/// A word that encodes no instruction of the i860 XR.
+/// The error for a word that encodes no instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
@@ -12,7 +12,7 @@ pub struct IllegalWord(
 );
 
 const D_BIT: u32 = 1 << 9;
-/// Number of epsr, the last control register of the XR. The XP added bear, ccr and p0 to p3.
+/// Number of epsr, the last control register of the XR. The later XP has more: bear, ccr and p0 to p3.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;
 
 fn field(word: u32, low: u32) -> u8 {
@@ -27,7 +27,7 @@ fn split16(word: u32) -> i32 {
     signed16((word >> 5 & 0xF800) | (word & 0x07FF))
 }
 
-/// Decodes one word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
+/// Decodes one instruction word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
 ///
 /// # Errors
 /// [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not have.
@@ -53,7 +53,7 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     .ok_or(IllegalWord(word))
 }
 
-/// Clears register fields that the operation does not use.
+/// Sets the register fields that the operation does not use to zero.
 fn without_reserved_fields(mut i: Instruction) -> Instruction {
     let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
     i.dest &= field(mask, 16);

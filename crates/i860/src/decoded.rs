@@ -3,7 +3,7 @@
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Hazards that can delay an instruction, one bit for each.
+/// Hazards that can delay an instruction. Each hazard is one bit.
 pub(crate) mod hazard {
     pub(crate) const SCALAR: u16 = 1 << 0;
     pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 1;
@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// Classes of hazards that an instruction leaves for later instructions.
+/// Hazards that an instruction causes for later instructions. Each class is one bit.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -36,19 +36,19 @@ pub(crate) mod arm {
 /// Register number of an absent operand.
 pub(crate) const NONE: u8 = 0xFF;
 
-/// A decoded instruction with its timing classes.
+/// A decoded instruction with its properties for the timing model.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoded {
     pub(crate) reads: u64,
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
-    /// First source register if the multiplier reads it, else [`NONE`].
+    /// First source register if the multiplier reads this register, else [`NONE`].
     pub(crate) multiplier_source: u8,
     marks: u8,
 }
 
-/// Bits of `Decoded::marks`, one for each property.
+/// Bits of the field `Decoded::marks`. Each bit is one property of the instruction.
 mod mark {
     pub(super) const FLOATING: u8 = 1 << 0;
     pub(super) const BRANCH: u8 = 1 << 1;
@@ -82,33 +82,33 @@ impl Decoded {
         self.marks & mark::BRANCH != 0
     }
 
-    /// Returns true if the instruction has no visible effect: `fnop`, and shifts into r0 that load no shift count, for
-    /// example `nop`.
+    /// Returns true if the instruction has no visible effect: `fnop`, or a shift into r0 that loads no shift count.
+    /// `nop` is such a shift.
     pub(crate) fn is_idle(&self) -> bool {
         let Instruction { op, dest, .. } = self.instruction;
         op == Op::Fnop || dest == 0 && matches!(op, Op::Shl | Op::Shra | Op::Shrd)
     }
 
-    /// Returns the D bit, which requests dual-instruction mode.
+    /// Returns the D bit of the instruction, which requests dual-instruction mode.
     #[inline]
     pub(crate) fn dual(&self) -> bool {
         self.marks & mark::DUAL != 0
     }
 
-    /// Returns true if the instruction accesses data, branches or is `st.c`. Only these cost clocks that depend on
-    /// their execution.
+    /// Returns true if the instruction accesses data, branches or is `st.c`. Only the clocks of such instructions
+    /// depend on their execution.
     #[inline]
     pub(crate) fn affects_clock(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns for the first and the second source whether it is a pair of registers.
+    /// Returns two booleans. They are true if the first source, or the second source, is a pair of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if the destination of a pipelined operation may be one of its sources.
+    /// Returns true if the destination of a pipelined operation can be one of its own sources.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0
@@ -134,7 +134,7 @@ fn marks(i: &Instruction) -> u8 {
         | on(mark::ACCESSES, i.op <= Op::Pst || matches!(i.op, Op::Flush | Op::StC))
 }
 
-/// Returns the bits of `bytes` of floating-point registers from register `n` in a register mask.
+/// Returns the mask of the floating-point registers that hold `bytes` bytes from register `n` on.
 pub(crate) fn float_mask(n: u8, bytes: u8) -> u64 {
     let n = u32::from(n);
     let low = match bytes {
@@ -246,8 +246,8 @@ fn floating_arms(i: &Instruction) -> u16 {
     }
 }
 
-/// Returns the register of [`Decoded::multiplier_source`]. In a dual operation the first source goes to the multiplier
-/// for four of the sixteen data paths.
+/// Returns the register for the field [`Decoded::multiplier_source`]. For four of the sixteen data paths of a dual
+/// operation, the first source goes to the multiplier.
 fn multiplier_source(i: &Instruction) -> u8 {
     // Only operations whose first source goes to the multiplier matter to row 9.
     let reads_first = match i.op {

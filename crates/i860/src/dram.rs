@@ -1,40 +1,43 @@
-//! The external bus and the page-mode memory behind it, in closed form: each request returns the clocks of its data.
+//! The external bus and the page-mode memory behind it. The model computes the arrival time of all data at the request,
+//! without an event for each transfer.
 
 use crate::timing::{ChipSizes, DramTiming};
 
 const BUS_BYTES: u64 = ChipSizes::PAPERS.bus_bytes;
 const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 
-/// The clocks at which the data of a request arrive.
+/// The clocks at which the 8-byte transfers of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Arrival of the first (needed) 8 bytes, as a clock.
+    /// Clock at which the first 8 bytes arrive; these contain the requested data.
     pub(crate) first: u64,
-    /// Arrival of the last 8 bytes, as a clock.
+    /// Clock at which the last 8 bytes arrive.
     pub(crate) last: u64,
-    /// Clocks between successive 8 bytes.
+    /// Number of clocks between successive transfers of 8 bytes.
     step: u64,
 }
 
 impl Transfer {
-    /// Returns the clock at which the 8 bytes with this number arrive. Number 0 are the requested bytes.
+    /// Returns the clock at which transfer `number` arrives. Transfer 0 has the requested 8 bytes.
     pub(crate) fn arrival(&self, number: u32) -> u64 {
         self.first + u64::from(number) * self.step
     }
 }
 
-/// State of the bus and the memory.
+/// State of the external bus and the memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// Clock from which a read of the open row can start. Such a read overlaps with the data of the previous read.
+    /// First clock at which a read of the open DRAM row can start. Such a read overlaps with the data of the previous
+    /// read.
     free: u64,
-    /// Clock at which the data of all requests have passed. No write and no other row begins before it.
+    /// Clock at which the data of all requests have been transferred. A write, or a request to another DRAM row, starts
+    /// at this clock or later.
     data_end: u64,
     open_page: u64,
     next_refresh: u64,
     next_dma: u64,
-    /// Ends of the latest requests, oldest first.
+    /// Clocks at which the latest requests end, the oldest request first.
     outstanding: [u64; BUS_DEPTH],
     pub(crate) transfers: u64,
     pub(crate) page_misses: u64,
@@ -57,17 +60,17 @@ impl Dram {
         }
     }
 
-    /// Returns the clock at which the address pipe has room.
+    /// Returns the first clock at which the bus's address pipe can take a request.
     pub(crate) fn accepts_at(&self) -> u64 {
         self.outstanding[0]
     }
 
-    /// Returns the clock at which all requests so far are complete.
+    /// Returns the clock at which all requests made so far are complete.
     pub(crate) fn idle_at(&self) -> u64 {
         self.data_end.max(self.free)
     }
 
-    /// Inserts refreshes and transfers of other bus masters that are due before a request at `now`.
+    /// Counts the refreshes and the transfers of other bus masters that are due before a request at clock `now`.
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [
@@ -86,7 +89,7 @@ impl Dram {
         }
     }
 
-    /// Opens the row of an address. Returns true if it was open already.
+    /// Opens the DRAM row of an address. Returns true if the row was open already.
     fn open(&mut self, address: u32) -> bool {
         let page = u64::from(address) / self.timing.page_bytes.max(BUS_BYTES);
         let hit = page == self.open_page;
@@ -104,10 +107,10 @@ impl Dram {
         transfer
     }
 
-    /// Reads `beats` transfers of 8 bytes, the needed one first.
+    /// Reads `beats` transfers of 8 bytes. The requested 8 bytes come first.
     ///
-    /// Requests to the open row overlap: the first data of the next request follow `next` clocks after the last data of
-    /// this one. A row is closed after its last data have passed.
+    /// Requests to the open DRAM row overlap: the first data of the next request follow `next` clocks after the last
+    /// data of this request. A DRAM row is closed after its last data were transferred.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -121,7 +124,7 @@ impl Dram {
         self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one row, after the data of all reads have passed.
+    /// Writes `beats` transfers of 8 bytes within one DRAM row, after the data of all reads were transferred.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

@@ -2,7 +2,7 @@
 
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Source of an operand of a dual operation. M and A are the last stages of multiplier and adder.
+/// Source of an operand of a dual operation. `M` and `A` are the results that leave the multiplier and the adder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Source {
@@ -15,7 +15,7 @@ pub(crate) enum Source {
     A,
 }
 
-/// One row of the data-path control table of the dual operations.
+/// One row of the table of data paths. The row is selected by the field DPC (data-path control) of a dual operation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Route {
     pub(crate) multiplier: [Source; 2],
@@ -28,7 +28,8 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
     Route { multiplier, adder, loads_t, loads_k }
 }
 
-/// The sixteen data paths by DPC for pfam and pfsm. For pfmam and pfmsm, [`MULTIPLIER_ROUTES`] has `M` for every `A`.
+/// The sixteen data paths of pfam and pfsm, by the field DPC (data-path control). For pfmam and pfmsm,
+/// [`MULTIPLIER_ROUTES`] has `M` for every `A`.
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};
     [
@@ -71,7 +72,7 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns for the first and the second source whether it is a pair of registers.
+/// Returns two booleans. They are true if the first source, or the second source, is a pair of registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);
@@ -88,7 +89,8 @@ pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     }
 }
 
-/// Returns true if the first source goes to the adder or the graphics unit, which have a bypass.
+/// Returns true if the first source goes to the adder or the graphics unit. Only these units can use a result in the
+/// clock in which the result leaves a pipe.
 pub(crate) fn first_has_bypass(i: &Instruction) -> bool {
     match i.op {
         Op::DualOp => ROUTES[(i.imm & 15) as usize].adder[0] == Source::S1,

@@ -1,11 +1,11 @@
-//! The executed part of a basic block.
+//! The part of a basic block that was executed.
 
-/// The executed part of a block, and how it ended.
+/// The part of a basic block that was executed, and how it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Execution {
-    /// Number of executed instructions or pairs, without the delay slot.
+    /// Number of instructions or pairs that were executed, without the delay slot.
     pub(crate) units: usize,
-    /// True if the slot was executed.
+    /// True if the delay slot was executed.
     pub(crate) slot: bool,
     /// True if the branch at the end was taken.
     pub(crate) taken: bool,

@@ -1,4 +1,4 @@
-//! Instruction fetch: the line of the last fetch, and the instruction cache behind it.
+//! Instruction fetch: the cache line of the last fetch, and the instruction cache.
 
 use crate::block::Block;
 use crate::bus::Bus;
@@ -8,10 +8,10 @@ use crate::memo::ArrivingLine;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Value of `Fetch::line` when no line is held.
+/// Value of `Fetch::line` when the fetch unit holds no cache line.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
-/// Bus transfers of one cache line.
+/// Number of bus transfers that fill one cache line.
 const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug)]
@@ -19,9 +19,9 @@ pub(crate) struct Fetch {
     cache: InstructionTags,
     /// Number of the cache line of the last fetch.
     line: u32,
-    /// Clocks at which the transfers of the line arrive, by position in the line.
+    /// Clocks at which the transfers of the line arrive, sorted by their position in the line.
     arrivals: [u64; BEATS as usize],
-    /// Position in the line of the transfer that arrives first.
+    /// Position, within the cache line, of the 8-byte transfer that arrives first.
     first: u8,
 }
 
@@ -36,43 +36,42 @@ impl Fetch {
         self.line
     }
 
-    /// Records that the last fetch was from this line, after a remembered run.
+    /// Records `line` as the cache line of the last fetch, because the clocks of a remembered run were reused.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
     }
 
-    /// Returns true if the last fetch was from the line of `pc`.
+    /// Returns true if `pc` is in the cache line of the last fetch.
     #[inline]
     pub(crate) fn is_in_line(&self, pc: u32) -> bool {
         pc / LINE_BYTES == self.line
     }
 
-    /// Returns true if a fetch from `pc` goes to the bus.
+    /// Returns true if a fetch from address `pc` misses the instruction cache and goes to the bus.
     #[inline]
     pub(crate) fn misses(&self, pc: u32) -> bool {
         !self.is_in_line(pc) && !self.cache.holds(pc)
     }
 
-    /// Returns the rest of the instruction line that is arriving.
+    /// Returns the part of an instruction-cache line that has not arrived yet.
     #[inline]
     pub(crate) fn filling(&self, common: &Common) -> ArrivingLine {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Continues the numbering of cache states after `latest`, so that states of different processors have different
-    /// numbers.
+    /// Numbers the next cache states from `latest` on, so that states of different processors have different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
 
-    /// Returns the number of the current state of the cache, which changes with every fill.
+    /// Returns the number of the cache's current state. The number changes with every line fill.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }
 
-    /// Returns true if the cache holds the whole block.
+    /// Returns true if all cache lines of the block are in the instruction cache.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)
@@ -83,7 +82,7 @@ impl Fetch {
         self.line = NO_LINE;
     }
 
-    /// Fetches the word or pair at `pc`.
+    /// Counts the fetch of the instruction or pair at address `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {

@@ -1,4 +1,5 @@
-//! Freezes: reasons for which the processor stands still. This table has the rules; [`FreezeClocks`] has their clocks.
+//! Freezes: hazards for which the processor stops issuing instructions. This module has the rules; [`FreezeClocks`] has
+//! their costs in clocks.
 
 use crate::timing::FreezeClocks;
 use parameters::{ParameterInfo, ParameterTable};
@@ -6,22 +7,23 @@ use parameters::{ParameterInfo, ParameterTable};
 /// One row of the freeze table.
 #[derive(Clone, Copy, Debug)]
 pub struct FreezeRow {
-    /// Identifier of the row in this program.
+    /// Identifier of the row in code.
     pub id: Freeze,
-    /// Row number in Intel's list, from memory, with a letter where one number has several costs.
+    /// Row number in Intel's list, from memory. A letter is added if one row of the list has several costs.
     pub number: &'static str,
-    /// Condition under which the row applies.
+    /// Description of the condition under which the row applies.
     pub condition: &'static str,
-    /// Variable part of the cost, which is added to or subtracted from the constant part.
+    /// Description of the variable part of the cost, which is added to or subtracted from the constant part.
     pub variable: &'static str,
-    /// Value, range and source of the constant part, from the field of [`FreezeClocks`] with the same position.
+    /// Description of the constant part of the cost: value, range and source. The field of [`FreezeClocks`] with the
+    /// same position holds the value.
     pub clocks: &'static ParameterInfo,
 }
 
-/// Declares the enumeration and the table from one list: name, number, condition, variable part.
+/// Declares the enumeration `Freeze` and the table `FREEZES` from one list of rows.
 macro_rules! freezes {
     ($($id:ident $number:literal $condition:literal $variable:literal;)*) => {
-        /// A reason for which the processor stands still. The order is the order of [`FREEZES`].
+        /// A hazard for which the processor stops issuing instructions. The variants have the order of [`FREEZES`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
         #[non_exhaustive]
@@ -32,10 +34,10 @@ macro_rules! freezes {
         /// Number of rows of [`FREEZES`].
         pub const N_FREEZES: usize = [$($number),*].len();
 
-        /// The freeze rules. Simultaneous freezes cost the longest of them; cache misses add up.
+        /// The freeze rules. Of several simultaneous freezes only the longest one counts, but cache misses add up.
         ///
-        /// "Since" counts clocks. An instruction in between that was frozen itself therefore shortens the wait by its
-        /// whole time.
+        /// The word "since" counts clocks. If an instruction in between was frozen itself, its delay shortens the wait
+        /// by the same number of clocks.
         pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
             id: Freeze::$id,
             number: $number,
@@ -80,63 +82,63 @@ freezes! {
     SeedUse "25" "result of frcp or frsqr used by the next instruction" "";
 }
 
-/// The rows that apply, and their constant parts.
+/// The freeze rows that are enabled, and the constant parts of their costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreezeRules {
     enabled: u32,
-    /// Constant parts of all rows, including rows that do not apply.
+    /// Constant parts of the costs of all rows, including disabled rows.
     pub clocks: FreezeClocks,
-    /// True if row 8 also covers and, andnot, or and xor. Intel's list leaves this open; the default is false.
+    /// True if row 8 also applies after and, andnot, or and xor. Intel's list leaves this open; the default is false.
     pub logicals_delay_branches: bool,
 }
 
 impl FreezeRules {
-    /// Returns rules with all rows of [`FREEZES`].
+    /// Returns rules with all rows of [`FREEZES`] enabled.
     #[must_use]
     pub fn all() -> FreezeRules {
         let enabled = (1 << N_FREEZES) - 1;
         FreezeRules { enabled, clocks: FreezeClocks::PAPERS, logicals_delay_branches: false }
     }
 
-    /// Returns rules without any row: one clock per instruction or pair.
+    /// Returns rules with all rows disabled: each instruction or pair takes one clock.
     #[must_use]
     pub fn none() -> FreezeRules {
         FreezeRules { enabled: 0, ..FreezeRules::all() }
     }
 
-    /// Returns the same rules with one row switched off.
+    /// Returns the same rules with one row disabled.
     #[must_use]
     pub fn without(mut self, id: Freeze) -> FreezeRules {
         self.enabled &= !(1 << id as u32);
         self
     }
 
-    /// Returns the same rules with one row switched on.
+    /// Returns the same rules with one row enabled.
     #[must_use]
     pub fn with(mut self, id: Freeze) -> FreezeRules {
         self.enabled |= 1 << id as u32;
         self
     }
 
-    /// Returns the numbers of the rows that apply, in order, and the interpretation of row 8 if it is not the default.
+    /// Returns the numbers of the enabled rows in order. If row 8 also applies after logical operations, this is added.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");
         applying.chain(logicals).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns true if a row applies.
+    /// Returns true if a row is enabled.
     #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {
         self.enabled & 1 << id as u32 != 0
     }
 }
 
-/// The freeze rules in a form that the clock can query quickly.
+/// The costs of the freeze rules, stored for quick access by the clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     enabled: u32,
-    /// Constant part of each row; 0 if the row does not apply.
+    /// Constant part of each row's cost in clocks, or 0 if the row is disabled.
     clocks: [u64; N_FREEZES],
     pub(crate) logicals_delay_branches: bool,
 }
@@ -157,7 +159,7 @@ impl Costs {
         self.enabled & 1 << id as u32 != 0
     }
 
-    /// Returns the constant part of a row, or 0 if the row is off.
+    /// Returns the constant part of a row's cost in clocks, or 0 if the row is disabled.
     #[inline]
     pub(crate) fn clocks(&self, id: Freeze) -> u64 {
         self.clocks[id as usize]

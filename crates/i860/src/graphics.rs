@@ -5,11 +5,13 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// For each psr.PS: the bits of a pixel sum that faddp copies into MERGE, and the shift of MERGE before the copy.
+/// For each pixel size psr.PS: the mask of the bits that faddp copies into MERGE, and the number of bits by which MERGE
+/// is shifted before.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 
-/// Returns the smaller of each pair of fields, and a bit for each field that is set if `b` is not greater.
+/// Returns the smaller field of each pair of fields in `a` and `b`. Also returns one bit for each field, which is set
+/// if `b` is not greater than `a`.
 fn z_check(a: u64, b: u64, width: u32) -> (u64, u32) {
     let field = (1u64 << width) - 1;
     let mut result = (0, 0);

@@ -4,9 +4,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
-    /// `ld.b`: loads a byte and extends its sign.
+    /// `ld.b`: loads a byte and extends its sign to 32 bits.
     LdB,
-    /// `ld.s`: loads 16 bits and extends their sign.
+    /// `ld.s`: loads 16 bits and extends their sign to 32 bits.
     LdS,
     /// `ld.l`: loads 32 bits.
     LdL,
@@ -20,9 +20,9 @@ pub enum Op {
     Fld,
     /// `fst`: stores one, two or four floating-point registers.
     Fst,
-    /// `pfld`: pipelined load. Its destination receives the data of the third `pfld` before it.
+    /// `pfld`: pipelined load. Its destination register receives the data that the third `pfld` before it has loaded.
     Pfld,
-    /// `pst`: stores the pixels selected by psr.PM.
+    /// `pst`: stores the pixels whose bits in psr.PM are set.
     Pst,
     /// `ld.c`: reads a control register.
     LdC,
@@ -48,19 +48,21 @@ pub enum Op {
     Bte,
     /// `btne`: branches if the operands differ, without a delay slot.
     Btne,
-    /// `br`: branches after the delay slot.
+    /// `br`: branches unconditionally after the delay slot.
     Br,
     /// `call`: calls after the delay slot; r1 receives the return address.
     Call,
-    /// `bc`: branches if CC is set, without a delay slot.
+    /// `bc`: branches if the condition code CC is set, without a delay slot.
     Bc,
-    /// `bc.t`: branches if CC is set, after the delay slot. Skips the slot when not taken.
+    /// `bc.t`: branches if the condition code CC is set, after the delay slot. If the branch is not taken, the slot is
+    /// skipped.
     BcT,
-    /// `bnc`: branches if CC is clear, without a delay slot.
+    /// `bnc`: branches if the condition code CC is clear, without a delay slot.
     Bnc,
-    /// `bnc.t`: branches if CC is clear, after the delay slot. Skips the slot when not taken.
+    /// `bnc.t`: branches if the condition code CC is clear, after the delay slot. If the branch is not taken, the slot
+    /// is skipped.
     BncT,
-    /// `bla`: adds, and branches after the delay slot if LCC was set.
+    /// `bla`: adds two registers, and branches after the delay slot if the loop condition code LCC was set before.
     Bla,
     /// `addu`: unsigned add; OF and CC receive the carry.
     Addu,
@@ -70,13 +72,13 @@ pub enum Op {
     Adds,
     /// `subs`: src1 - src2, signed; sets CC if src2 > src1.
     Subs,
-    /// `shl`: shifts left. `shl` of r0 by r0 into r0 is `nop`.
+    /// `shl`: shifts left. `nop` is a `shl` whose three registers are all r0.
     Shl,
-    /// `shr`: shifts right without sign, and loads psr.SC.
+    /// `shr`: shifts right and fills with zeros, and loads the shift count psr.SC.
     Shr,
-    /// `shrd`: shifts a pair of registers right by psr.SC.
+    /// `shrd`: shifts a pair of registers right by the shift count psr.SC.
     Shrd,
-    /// `shra`: shifts right and keeps the sign.
+    /// `shra`: shifts right and fills with the sign bit.
     Shra,
     /// `and`: bitwise and; sets CC if the result is 0.
     And,
@@ -94,7 +96,7 @@ pub enum Op {
     Xor,
     /// `xorh`: bitwise exclusive or with the immediate in the high half.
     Xorh,
-    /// `fnop`: no operation in the floating-point half of a pair.
+    /// `fnop`: no operation; fills the floating-point half of a pair.
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
@@ -128,13 +130,13 @@ pub enum Op {
     Fiadd,
     /// `fisub`: subtracts long integers in the graphics unit.
     Fisub,
-    /// `faddp`: adds and merges pixels into MERGE.
+    /// `faddp`: adds pixels and merges the sum into the register MERGE.
     Faddp,
-    /// `faddz`: adds and merges depths into MERGE.
+    /// `faddz`: adds depths and merges the sum into the register MERGE.
     Faddz,
     /// `fzchkl`: compares two 32-bit depths and keeps the smaller ones.
     Fzchkl,
-    /// `form`: bitwise or with MERGE, which becomes 0.
+    /// `form`: bitwise or with the register MERGE, which becomes 0.
     Form,
     /// `fzchks`: compares four 16-bit depths and keeps the smaller ones.
     Fzchks,
@@ -148,26 +150,27 @@ pub enum Op {
 pub struct Flags(pub u8);
 
 impl Flags {
-    /// The first source is an immediate.
+    /// Flag: the first source is an immediate.
     pub const IMMEDIATE: Flags = Flags(1);
-    /// The base register receives the effective address.
+    /// Flag: the base register receives the effective address (auto-increment).
     pub const AUTOINCREMENT: Flags = Flags(2);
-    /// The operation is pipelined. For dual operations: `pfam` and `pfsm` instead of `pfmam` and `pfmsm`.
+    /// Flag: the operation is pipelined. In dual operations the flag selects `pfam` and `pfsm` instead of `pfmam` and
+    /// `pfmsm`.
     pub const PIPELINED: Flags = Flags(4);
     /// The D bit, which starts and continues dual-instruction mode.
     pub const DUAL: Flags = Flags(8);
-    /// The S bit: sources are double-precision.
+    /// The S bit: the sources are in double precision.
     pub const SOURCE_DOUBLE: Flags = Flags(16);
-    /// The R bit: the result is double-precision.
+    /// The R bit: the result is in double precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
-    /// Returns true if all bits of `other` are set.
+    /// Returns true if all bits of `other` are set in this set.
     #[must_use]
     pub fn has(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Returns the union of two sets if `condition` is true, else `self`.
+    /// Returns the union of this set and `other` if `condition` is true, else this set.
     #[must_use]
     pub fn with(self, other: Flags, condition: bool) -> Flags {
         Flags(self.0 | if condition { other.0 } else { 0 })
@@ -176,36 +179,36 @@ impl Flags {
 
 /// One decoded instruction.
 ///
-/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded; `op` decides the register file. The register that
-/// is stored is `src1` for stores of integer registers, and `dest` for `fst` and `pst`. `imm` holds the immediate, the
+/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded; `op` decides the register file. A store of an
+/// integer register stores register `src1`; `fst` and `pst` store register `dest`. `imm` holds the immediate, the
 /// displacement in bytes, or the branch offset in words. `size` is the operand size in bytes of fld, fst, pfld and pst,
 /// and 0 for other operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// Operation in all its precisions and addressing forms.
+    /// Operation, without its precision and addressing form.
     pub op: Op,
-    /// Number of the destination register, in the integer or the floating-point file.
+    /// Number of the destination register. The operation decides if this is an integer or a floating-point register.
     pub dest: u8,
     /// First source register. For ld.c and st.c, `src2` selects the control register.
     pub src1: u8,
     /// Second source register, or the base register of an address.
     pub src2: u8,
-    /// Operand size in bytes of floating-point loads and stores, 0 for other operations.
+    /// Operand size in bytes for floating-point loads and stores, 0 for other operations.
     pub size: u8,
-    /// Bits for precision, pipelining and addressing.
+    /// Flags for precision, pipelining, addressing form and dual-instruction mode.
     pub flags: Flags,
-    /// Immediate, displacement in bytes, or branch offset in words.
+    /// Immediate, address displacement in bytes, or branch offset in words.
     pub imm: i32,
 }
 
 impl Instruction {
-    /// Makes an instruction with all fields zero.
+    /// Makes an instruction with the given operation. All other fields are zero.
     #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }
     }
 
-    /// Returns true if all given modifier bits are set.
+    /// Returns true if all bits of `flags` are set.
     #[must_use]
     pub fn has(&self, flags: Flags) -> bool {
         self.flags.has(flags)
@@ -217,14 +220,15 @@ impl Instruction {
         self.op >= Op::Fnop
     }
 
-    /// Returns true if the operation transfers control after the next instruction or pair.
+    /// Returns true if the operation is a branch with a delay slot: control is transferred after the next instruction
+    /// or pair.
     #[must_use]
     pub fn is_delayed_branch(&self) -> bool {
         use Op::{BcT, Bla, BncT, Br, Bri, Call, Calli};
         matches!(self.op, Br | Call | Bri | Calli | Bla | BcT | BncT)
     }
 
-    /// Returns true if the operation transfers control.
+    /// Returns true if the operation is a branch, call or jump, with or without a delay slot.
     #[must_use]
     pub fn is_branch(&self) -> bool {
         self.is_delayed_branch() || matches!(self.op, Op::Bc | Op::Bnc | Op::Bte | Op::Btne)
@@ -258,5 +262,5 @@ impl Instruction {
     }
 }
 
-/// Encoding of `fnop`, which is `shrd` of three r0. Its bit 9 is the D bit.
+/// Encoding of `fnop`, which is a `shrd` whose registers are all r0. Bit 9 is the D bit.
 pub(crate) const FNOP: u32 = 0xB000_0000;

@@ -6,7 +6,7 @@ use crate::instruction::Op;
 use crate::state::{dirbase, epsr, psr};
 
 impl Cpu {
-    /// Executes arithmetic, logic and shifts.
+    /// Executes arithmetic operations, logical operations and shifts.
     #[inline(always)]
     pub(crate) fn integer(&mut self, action: &CoreAction) {
         let a = action.immediate.wrapping_add(self.state.r(action.first));
@@ -95,7 +95,7 @@ impl Cpu {
         }
     }
 
-    /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr change.
+    /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr can change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
         // User mode may change only a part of the bits.
         let user = self.state.psr & psr::U != 0;
@@ -115,7 +115,8 @@ impl Cpu {
         self.directory_base = Some(value);
     }
 
-    /// Applies a write of the directory base to caches and translation, after its own time was counted.
+    /// Applies a new value of the directory-base register to caches and translation. The clocks of the writing
+    /// instruction were counted before.
     #[cold]
     pub(crate) fn apply_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
@@ -134,7 +135,7 @@ impl Cpu {
     }
 }
 
-/// Returns `old` with the bits of the mask replaced by those of `new`.
+/// Returns `old` with the bits in the mask replaced by the bits of `new`.
 fn merge(old: u32, new: u32, mask: u32) -> u32 {
     old & !mask | new & mask
 }

@@ -1,4 +1,4 @@
-//! The load pipe: pipelined loads, whose data bypass the cache and arrive in a register three loads later.
+//! The pipe of pipelined loads (`pfld`). Their data bypass the cache and reach a register three loads later.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
@@ -8,12 +8,12 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LoadPipe {
-    /// Clocks at which the data of the latest loads arrive, the oldest first.
+    /// Clocks at which the data of the latest pipelined loads arrive, the oldest load first.
     arrivals: [u64; DEPTH],
 }
 
 impl LoadPipe {
-    /// Starts a load after the data of the oldest one have arrived.
+    /// Starts a pipelined load after the data of the oldest one have arrived.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
         // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
@@ -29,7 +29,7 @@ impl LoadPipe {
     }
 }
 
-/// Returns the arrival of data that the cache holds: after all earlier bus cycles have ended.
+/// Returns the clock at which data from the cache arrive: after all earlier bus cycles have ended.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

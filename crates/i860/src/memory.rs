@@ -15,7 +15,8 @@ impl Cpu {
         if address & (size - 1) == 0 { Ok(address) } else { Err(TrapCause::Unaligned { address, size }) }
     }
 
-    /// Records an access: its address for the clock and, with auto-increment, for the base register.
+    /// Records the address of a load or store for the clock. With auto-increment, the address is also written to the
+    /// base register.
     #[inline(always)]
     fn accessed(&mut self, a: &CoreAction, address: u32, stores: bool) {
         self.state.set_r(a.increments, address);
@@ -37,7 +38,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// Returns the control flow after a store.
+    /// Returns the control flow after a store, which depends on whether the store has changed decoded code.
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }
@@ -145,7 +146,8 @@ impl Cpu {
         Ok(Flow::Next)
     }
 
-    /// Writes the pixels whose PM bit is set, bit 0 at the lowest address, and shifts PM by the number of pixels.
+    /// Writes the pixels whose PM bits are set. Bit 0 belongs to the pixel at the lowest address. Then shifts PM by the
+    /// number of pixels.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, 8)?;
         // Trap before any pixel is written if the address is not mapped.
@@ -163,7 +165,7 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush` on any address; there is no check of alignment or mapping.
+    /// Executes `flush`. The alignment of the address is not checked, and memory need not exist there.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

@@ -5,7 +5,8 @@ use crate::instruction::{FNOP, Flags, Instruction, Op};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// Names of the data paths by DPC with `_` for p (plus) or s (minus): pfam and pfsm, then pfmam and pfmsm.
+/// Names of the data paths of the dual operations, in the order of the DPC field. The character `_` stands for p (plus)
+/// or s (minus). The first row is for pfam and pfsm, the second for pfmam and pfmsm.
 const PATHS: [[&str; 16]; 2] = [
     [
         "r2_1", "r2_t", "r2a_1", "r2a_t", "i2_1", "i2_t", "i2a_1", "i2a_t", "rat1_2", "m12a_m", "ra1_2", "m12tt_a",
@@ -124,7 +125,7 @@ fn suffix(i: &Instruction) -> &'static str {
     }
 }
 
-/// Returns the mnemonic of an instruction, with its `d.` prefix.
+/// Returns the mnemonic of an instruction, with the prefix `d.` if its D bit is set.
 #[must_use]
 pub fn mnemonic(i: &Instruction) -> String {
     let dual = if i.is_floating() && i.has(Flags::DUAL) { "d." } else { "" };
@@ -135,7 +136,7 @@ pub fn mnemonic(i: &Instruction) -> String {
     format!("{dual}{pipelined}{}{}", base_name(i.op), suffix(i))
 }
 
-/// Returns true if the bits that the operation ignores are set as Intel's assembler sets them.
+/// Returns true if the bits that the operation ignores have the values that Intel's assembler gives them.
 fn is_canonical(i: &Instruction) -> bool {
     let double = Flags(Flags::SOURCE_DOUBLE.0 | Flags::RESULT_DOUBLE.0);
     match i.op {
@@ -146,7 +147,8 @@ fn is_canonical(i: &Instruction) -> bool {
     }
 }
 
-/// Returns all mnemonics without `d.`, each with its instruction. Registers and immediates are zero.
+/// Returns all mnemonics without the prefix `d.`. Each one has its instruction, in which registers and immediates are
+/// zero.
 pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     static TABLE: OnceLock<BTreeMap<String, Instruction>> = OnceLock::new();
     TABLE.get_or_init(|| {
@@ -161,14 +163,14 @@ pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     })
 }
 
-/// Returns one word of every form: all major opcodes, sizes, escapes and floating-point operations.
+/// Iterates over words that cover every form of instruction: all opcodes, sizes, escapes and floating-point operations.
 fn every_word() -> impl Iterator<Item = u32> {
     let floating = (0..2048u32).filter(|low| low & 0x200 == 0).map(|low| 0x12 << 26 | low);
     let core = (0..64u32).filter(|op| *op != 0x12).flat_map(|op| (0..8).map(move |low| op << 26 | low));
     core.chain(floating).chain([FNOP])
 }
 
-/// Returns the instruction of a mnemonic, with its D bit.
+/// Returns the instruction that has a mnemonic. The prefix `d.` sets the D bit.
 pub(crate) fn lookup(name: &str) -> Option<Instruction> {
     let (plain, dual) = match name.strip_prefix("d.") {
         Some(rest) => (rest, true),

@@ -1,4 +1,4 @@
-//! Operands of the floating-point half, with the bypass of results that leave a pipe.
+//! Operands of floating-point instructions. An operand can be a result that is just leaving a pipe.
 
 use crate::action::{Floating, FloatingAction};
 use crate::block::Unit;
@@ -8,8 +8,8 @@ use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
-/// Source operands as read before either half of a pair writes. A result that leaves the pipe is already visible in
-/// them.
+/// Source operands of a floating-point instruction. They are read before either half of a pair writes, but include a
+/// result that is just leaving the pipe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,
@@ -17,7 +17,7 @@ pub(crate) struct Operands {
 }
 
 impl Cpu {
-    /// Reads the sources of a floating-point instruction or of the floating-point half of a pair.
+    /// Reads the source operands of a floating-point instruction, alone or as half of a pair.
     #[inline(always)]
     pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;
@@ -59,7 +59,8 @@ pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
-/// Returns the result that a pipelined instruction sends to its destination; `None` for a scalar instruction.
+/// Returns the result that leaves the pipe for the destination of a pipelined instruction. Returns `None` for a scalar
+/// instruction.
 fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
@@ -76,7 +77,7 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     })
 }
 
-/// Reads register `n` as if the leaving result had already reached `dest`.
+/// Reads register `n` as if the result leaving the pipe had already been written to register `dest`.
 fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);

@@ -1,24 +1,24 @@
-//! Profiles: clocks of a run by cause and by address.
+//! Profiles: the clocks of a run, by cause and by code address.
 
 use crate::timing::{FREEZES, Freeze, N_FREEZES};
 use std::fmt;
 
-/// Clocks by cause since reset or the last [`Cpu::clear_profile`](crate::Cpu::clear_profile).
+/// Clocks since reset or the last [`Cpu::clear_profile`](crate::Cpu::clear_profile), by cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
     /// Number of executed instructions. A pair counts as two; `fnop` and `nop` are included.
     pub instructions: u64,
-    /// Clocks in which an instruction or a pair issued.
+    /// Number of clocks in which an instruction or a pair was issued.
     pub issue: u64,
-    /// Clocks lost to each freeze row, in the order of [`FREEZES`].
+    /// Number of clocks lost to each freeze row, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
     /// Number of requests on the bus.
     pub bus_requests: u64,
-    /// Number of requests that had to open a DRAM row.
+    /// Number of bus requests that had to open a DRAM row.
     pub page_misses: u64,
     /// Number of instruction-cache misses.
     pub instruction_misses: u64,
-    /// Number of data-cache misses of loads.
+    /// Number of loads that missed the data cache.
     pub data_misses: u64,
 }
 
@@ -35,13 +35,13 @@ impl Profile {
         }
     }
 
-    /// Returns the clocks lost to one freeze row.
+    /// Returns the number of clocks lost to one freeze row.
     #[must_use]
     pub fn frozen_by(&self, id: Freeze) -> u64 {
         self.frozen[id as usize]
     }
 
-    /// Returns the sum of issue clocks and freezes.
+    /// Returns the number of all clocks: issue clocks and freezes.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.issue + self.frozen.iter().sum::<u64>()
@@ -61,7 +61,7 @@ impl fmt::Display for Profile {
     }
 }
 
-/// Clocks and visits of every word in a range of addresses.
+/// Clocks and executions of each instruction word in a range of addresses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressProfile {
     base: u32,
@@ -69,7 +69,7 @@ pub struct AddressProfile {
 }
 
 impl AddressProfile {
-    /// Makes an empty profile of `words` instruction words from address `base`.
+    /// Makes an empty profile for `words` instruction words that begin at address `base`.
     #[must_use]
     pub fn new(base: u32, words: usize) -> AddressProfile {
         AddressProfile { base, rows: vec![(0, 0); words] }
@@ -83,15 +83,16 @@ impl AddressProfile {
         }
     }
 
-    /// Returns the clocks and visits of the instruction or pair at an address; zero outside the range.
+    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both are zero outside
+    /// the range.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;
         self.rows.get(at).copied().unwrap_or_default()
     }
 
-    /// Returns the clocks between each label and the next one, for labels sorted by address. Clocks before the first
-    /// label are left out.
+    /// Returns the clocks of the code between each label and the next one. `labels` must be sorted by address. Clocks
+    /// before the first label are left out.
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);

@@ -1,26 +1,28 @@
-//! The seeds of frcp (reciprocal) and frsqr (reciprocal square root).
+//! First approximations that frcp (reciprocal) and frsqr (reciprocal square root) return, the *seeds* of Newton steps.
 //!
-//! The chip's table is not public. The fraction error is known to stay below 2^-7, so the user chooses a
-//! table. Programs that refine by Newton steps differ by the last bit or two between the tables, never in their clocks.
+//! The chip's table is not public. The error of the fraction is known to stay below 2^-7, so the user chooses a table.
+//! Programs that refine the seeds by Newton steps differ between tables by the last bit or two. Their clocks are the
+//! same.
 
 use crate::arithmetic::{narrow, widen};
 
-/// The table of results of `frcp` and `frsqr`.
+/// The choice of results that `frcp` and `frsqr` return.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeedTable {
-    /// The correctly rounded double with its fraction cut to 8 bits: relative error below 2^-8, always too small in
-    /// magnitude. Assumed; the usual choice of functional emulators.
+    /// The correctly rounded double, whose fraction is cut to 8 bits. The relative error is below 2^-8, and the
+    /// magnitude is never too great. Assumed; the usual choice of functional emulators.
     Truncated8,
-    /// The result for the middle of the operand's interval of 8 fraction bits, rounded to 8 fraction bits. A 256-entry
-    /// ROM would hold these values (512 entries for frsqr, by the parity of the exponent). Assumed.
+    /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. Intervals are
+    /// given by 8 fraction bits. A 256-entry ROM would hold these values (512 entries for frsqr, by the parity of the
+    /// exponent). Assumed.
     Midpoint8,
-    /// The correctly rounded result, to separate effects of the table from other effects.
+    /// The correctly rounded result. With this choice the table adds no error.
     Exact,
 }
 
 impl SeedTable {
-    /// Returns the name of the table in lists of settings.
+    /// Returns the name of the choice in lists of settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -51,7 +53,7 @@ fn midpoint(x: f64) -> f64 {
 }
 
 impl SeedTable {
-    /// Returns the upper bound of the relative error.
+    /// Returns an upper bound of the results' relative error.
     #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {
@@ -73,32 +75,32 @@ impl SeedTable {
         }
     }
 
-    /// Returns the seed of the reciprocal of a double, as bit patterns.
+    /// Returns the result of `frcp` in double precision. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x))
     }
 
-    /// Returns the seed of the reciprocal square root of a double, as bit patterns.
+    /// Returns the result of `frsqr` in double precision. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal_root(self, bits: u64) -> u64 {
         quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x.sqrt()))
     }
 
-    /// Returns the seed of the reciprocal of a single, as bit patterns.
+    /// Returns the result of `frcp` in single precision. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal32(self, bits: u32) -> u32 {
         narrow(self.reciprocal(widen(bits)), false)
     }
 
-    /// Returns the seed of the reciprocal square root of a single, as bit patterns.
+    /// Returns the result of `frsqr` in single precision. Operand and result are bit patterns.
     #[must_use]
     pub fn reciprocal_root32(self, bits: u32) -> u32 {
         narrow(self.reciprocal_root(widen(bits)), false)
     }
 }
 
-/// Makes NaN results quiet, as the other floating-point operations do.
+/// Replaces a NaN result by a quiet NaN, as the other floating-point operations do.
 fn quiet(operand: u64, result: u64) -> u64 {
     match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
         (true, true) => operand | 0x0008_0000_0000_0000,

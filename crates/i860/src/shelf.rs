@@ -1,4 +1,4 @@
-//! Decoded code and remembered clocks of programs, shared by processors with the same configuration.
+//! Decoded programs with their remembered clocks, shared by processors with the same configuration.
 
 use crate::assembler::Program;
 use crate::code::Code;
@@ -6,17 +6,17 @@ use crate::memo::Numbers;
 use std::fmt;
 use std::sync::Arc;
 
-/// Decoded programs with their remembered clocks, for processors with the same freeze rules.
+/// A shared store of decoded programs with their remembered clocks, for processors with the same freeze rules.
 ///
-/// Several processors can use one shelf in turn, because code and clocks do not depend on the processor. A program that
-/// one processor has decoded and counted need not be decoded again by the others ([`Cpu::open`](crate::Cpu::open),
-/// [`Cpu::close`](crate::Cpu::close)).
+/// Several processors can use one store in turn, because decoded code and clocks do not depend on the processor. If one
+/// processor has decoded a program and counted its clocks, the others need not do this again
+/// ([`Cpu::open`](crate::Cpu::open), [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
 pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
-    /// Programs with their code; `None` while a processor uses the code.
+    /// Programs with their decoded code. The code is `None` while a processor uses it.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest number of an instruction-cache state so far.
+    /// Highest number that any state of an instruction cache has had so far.
     pub(crate) cache_states: u64,
 }
 
@@ -27,7 +27,7 @@ impl fmt::Debug for DecodedPrograms {
 }
 
 impl DecodedPrograms {
-    /// Makes a shelf without programs.
+    /// Makes a store without programs.
     #[must_use]
     pub fn new() -> DecodedPrograms {
         DecodedPrograms::default()
@@ -43,12 +43,12 @@ impl DecodedPrograms {
         &mut self.codes[at].1
     }
 
-    /// Takes the code of a program out of the shelf, or makes empty code.
+    /// Takes the decoded code of a program out of the store. If the store has none, an empty code is made.
     pub(crate) fn take(&mut self, program: &Arc<Program>) -> Code {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }
 
-    /// Puts the code of a program back.
+    /// Puts the decoded code of a program back into the store.
     pub(crate) fn put(&mut self, program: &Arc<Program>, code: Code) {
         *self.place(program) = Some(code);
     }

@@ -1,4 +1,4 @@
-//! The programmer's model: registers, control registers, pipes, dual-instruction mode.
+//! The state that a program can see: registers, control registers, pipes and dual-instruction mode.
 
 /// Bits of the processor status register.
 pub mod psr {
@@ -10,11 +10,11 @@ pub mod psr {
     pub const CC: u32 = 1 << 2;
     /// LCC: loop condition code, tested by `bla`.
     pub const LCC: u32 = 1 << 3;
-    /// IM: interrupt mode; interrupts are enabled while it is set.
+    /// IM: interrupt mode. Interrupts are enabled while this bit is set.
     pub const IM: u32 = 1 << 4;
     /// PIM: value of IM before the trap.
     pub const PIM: u32 = 1 << 5;
-    /// U: set in user mode.
+    /// U: user mode. The processor is in user mode while this bit is set.
     pub const U: u32 = 1 << 6;
     /// PU: value of U before the trap.
     pub const PU: u32 = 1 << 7;
@@ -28,27 +28,27 @@ pub mod psr {
     pub const DAT: u32 = 1 << 11;
     /// FT: set by a floating-point trap.
     pub const FT: u32 = 1 << 12;
-    /// DS, delayed switch: the trap occurred while dual-instruction mode was about to change.
+    /// DS, delayed switch: the trap occurred when dual-instruction mode was about to begin or end.
     pub const DS: u32 = 1 << 13;
     /// DIM: the trap occurred in dual-instruction mode.
     pub const DIM: u32 = 1 << 14;
-    /// KNF: kill the next floating-point instruction.
+    /// KNF: request to skip (kill) the next floating-point instruction.
     pub const KNF: u32 = 1 << 15;
-    /// Position of the lowest bit of the shift count.
+    /// Position of the lowest bit of SC, the shift count.
     pub const SC_SHIFT: u32 = 17;
-    /// SC: shift count, five bits.
+    /// SC: shift count of `shrd`, five bits.
     pub const SC: u32 = 31 << SC_SHIFT;
-    /// Position of the lowest bit of the pixel size.
+    /// Position of the lowest bit of PS, the pixel size.
     pub const PS_SHIFT: u32 = 22;
-    /// PS: pixel size; 0, 1, 2 for 8, 16, 32 bits.
+    /// PS: pixel size. The values 0, 1, 2 stand for 8, 16, 32 bits.
     pub const PS: u32 = 3 << PS_SHIFT;
-    /// Position of the lowest bit of the pixel mask.
+    /// Position of the lowest bit of PM, the pixel mask.
     pub const PM_SHIFT: u32 = 24;
-    /// PM: pixel mask, eight bits.
+    /// PM: pixel mask, eight bits. `pst` stores only pixels whose bits are set.
     pub const PM: u32 = 0xFF << PM_SHIFT;
-    /// All trap bits.
+    /// All bits that tell the cause of a trap.
     pub const TRAPS: u32 = IT | IN | IAT | DAT | FT;
-    /// Bits that a program in user mode can write.
+    /// Bits that a program can write in user mode.
     pub const USER: u32 = CC | LCC | SC | PS | PM;
 }
 
@@ -58,7 +58,7 @@ pub mod epsr {
     pub const IL: u32 = 1 << 13;
     /// OF: set by integer overflow and tested by `intovr`.
     pub const OF: u32 = 1 << 24;
-    /// Bits that software can write: WP, PBM, BE, OF. BE is stored but has no effect in this model.
+    /// Bits that a program can write: WP, PBM, BE, OF. BE is stored but has no effect in this model.
     pub const WRITABLE: u32 = 1 << 14 | 1 << 22 | 1 << 23 | OF;
     /// Value after reset: type 1 (XR), step 7 (D0), data cache of 2^(12+1) bytes.
     pub const RESET: u32 = 1 | 7 << 8 | 1 << 18;
@@ -66,9 +66,9 @@ pub mod epsr {
 
 /// Bits of the floating-point status register.
 pub mod fsr {
-    /// FZ: results that underflow become zero.
+    /// FZ: flush to zero. Results that underflow become zero.
     pub const FZ: u32 = 1;
-    /// Position of the lowest bit of the rounding mode, which only `fix` obeys.
+    /// Position of the lowest bit of RM, the rounding mode. In this model only `fix` uses RM.
     pub const RM_SHIFT: u32 = 2;
 }
 
@@ -76,47 +76,47 @@ pub mod fsr {
 pub mod dirbase {
     /// ATE: turns address translation on.
     pub const ATE: u32 = 1;
-    /// BL: locks the bus.
+    /// BL: locks the bus while the bit is set.
     pub const BL: u32 = 1 << 4;
-    /// ITI: invalidates the TLB and the instruction cache.
+    /// ITI: writing 1 invalidates the TLB and the instruction cache.
     pub const ITI: u32 = 1 << 5;
-    /// DTB: address of the page directory.
+    /// DTB: the upper 20 bits of the address of the page directory.
     pub const DTB: u32 = 0xFFFF_F000;
 }
 
-/// A value in a pipe, with its precision.
+/// A value in one stage of a pipe, with its precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct PipeStage {
-    /// Bit pattern; a single occupies the low word.
+    /// Bit pattern of the value. A value in single precision occupies the low word.
     pub bits: u64,
-    /// True if the value is a double, which fills two registers.
+    /// True if the value is in double precision and fills two registers.
     pub double: bool,
 }
 
-/// Pairing state of dual-instruction mode.
+/// Pairing mode: how the next instructions form pairs in dual-instruction mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mode {
-    /// One instruction at a time.
+    /// Instructions execute one at a time.
     #[default]
     Single,
-    /// A single instruction at the upper half of an aligned 8 bytes whose lower half had its D bit set. Pairs begin
-    /// after it.
+    /// One more instruction executes alone, and pairs begin after it. The instruction is the upper half of an aligned 8
+    /// bytes whose lower half had its D bit set.
     Entering,
-    /// Dual-instruction mode that is ending or beginning: the next instructions form a pair. Another pair follows only
-    /// if this pair has its D bit set.
+    /// The next two instructions form a pair. This pair is the first or the last of dual-instruction mode. Another pair
+    /// follows only if this pair has its D bit set.
     DualOnce,
-    /// Dual-instruction mode: the next instructions form a pair, and another pair follows.
+    /// The next two instructions form a pair, and another pair follows.
     Dual,
 }
 
 impl Mode {
-    /// Returns true if the next instructions form a pair.
+    /// Returns true if the next two instructions form a pair.
     #[must_use]
     pub fn is_dual(self) -> bool {
         matches!(self, Mode::DualOnce | Mode::Dual)
     }
 
-    /// Returns the mode after a pair with D bit `d`.
+    /// Returns the pairing mode after a pair whose D bit is `d`.
     pub(crate) fn after_pair(self, d: bool) -> Mode {
         match (self, d) {
             (Mode::DualOnce, false) => Mode::Single,
@@ -126,7 +126,7 @@ impl Mode {
     }
 }
 
-/// The complete state that a program can read: registers, pipes and mode.
+/// The complete state that a program can see: registers, pipes and pairing mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
     /// Address of the next instruction or pair.
@@ -151,27 +151,27 @@ pub struct State {
     pub kr: u64,
     /// KI, the second constant register of dual operations.
     pub ki: u64,
-    /// T, which holds a product for a later addition of a dual operation.
+    /// T, the register that holds a product until a later dual operation adds it.
     pub t: u64,
     /// MERGE, the result register of the graphics unit.
     pub merge: u64,
-    /// Adder pipe; the last element leaves next.
+    /// Pipe of the adder. The last element leaves the pipe next.
     pub adder: [PipeStage; 3],
     /// Multiplier pipe. Double-precision operations use only the first two stages.
     pub multiplier: [PipeStage; 3],
-    /// Pipe of the pipelined loads.
+    /// Pipe of the pipelined loads (`pfld`).
     pub load: [PipeStage; 3],
-    /// Graphics pipe, of one stage.
+    /// Pipe of the graphics unit, with a single stage.
     pub graphics: PipeStage,
-    /// Pairing state: single instructions or pairs.
+    /// Pairing mode: single instructions or pairs.
     pub mode: Mode,
 }
 
-/// Address at which the processor starts and to which every trap goes.
+/// Address of the first instruction after reset, and of the trap handler.
 pub const TRAP_VECTOR: u32 = 0xFFFF_FF00;
 
 impl State {
-    /// Returns the state after reset: all registers zero, supervisor mode, at [`TRAP_VECTOR`].
+    /// Returns the state after reset: all registers are zero, supervisor mode, next instruction at [`TRAP_VECTOR`].
     #[must_use]
     pub fn reset() -> State {
         State {
@@ -212,7 +212,7 @@ impl State {
         self.f[usize::from(n & 31)]
     }
 
-    /// Returns the pair of an even register. An odd number selects the pair that contains the register.
+    /// Returns the 64-bit value of the register pair that contains floating-point register `n`.
     #[inline]
     pub(crate) fn f64_bits(&self, n: u8) -> u64 {
         let low = usize::from(n & 30);
@@ -263,7 +263,7 @@ impl State {
         self.psr = self.psr & !psr::PM | mask << psr::PM_SHIFT;
     }
 
-    /// Returns psr.PS: 0, 1, 2 for 8, 16, 32 bits. The reserved 3 behaves as 2.
+    /// Returns the pixel size psr.PS: 0, 1, 2 for 8, 16, 32 bits. The reserved value 3 counts as 2.
     pub(crate) fn pixel_size(&self) -> u32 {
         ((self.psr & psr::PS) >> psr::PS_SHIFT).min(2)
     }

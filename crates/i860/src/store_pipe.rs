@@ -1,22 +1,22 @@
-//! The store pipe: stores on their way to the bus, and write-backs of lines.
+//! The store pipe: stores that wait for the bus, and write-backs of cache lines.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const DEPTH: usize = ChipSizes::PAPERS.store_depth as usize;
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Bus transfers of one cache line.
+/// Number of bus transfers for one cache line.
 const LINE_BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StorePipe {
-    /// Clocks at which the latest stores leave the pipe, the oldest first.
+    /// Clocks at which the latest stores leave the store pipe, the oldest store first.
     ends: [u64; DEPTH],
     write_back_end: u64,
 }
 
 impl StorePipe {
-    /// Sends a store to the bus after the oldest store and any write-back have left.
+    /// Sends a store to the bus after the oldest store and any write-back have left the pipe.
     pub(crate) fn store(&mut self, address: u32, size: u32, common: &mut Common) {
         if common.costs.applies(Freeze::StorePipeFull) {
             self.wait_for_room(common);
@@ -36,7 +36,7 @@ impl StorePipe {
         }
     }
 
-    /// Starts to write a line back at clock `from`.
+    /// Starts to write a cache line back to memory at clock `from`.
     pub(crate) fn write_back(&mut self, from: u64, address: u32, common: &mut Common) {
         self.write_back_end = common.bus.write(from, address, LINE_BEATS).last;
     }

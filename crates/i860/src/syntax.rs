@@ -1,11 +1,11 @@
-//! The operands of each instruction as written, and the register fields of its word.
+//! The operands of each kind of instruction in assembler text, and the register fields of its word.
 
 use crate::instruction::{Instruction, Op};
 
-/// Operands of an instruction as written, in order.
+/// Operands of an instruction in assembler text, in order. Each variant is one form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
-    /// No operand: the mnemonic stands alone.
+    /// No operands: the instruction is only a mnemonic.
     Bare,
     /// `src1 or immediate, src2, dest`.
     Integer,
@@ -17,21 +17,21 @@ pub(crate) enum Syntax {
     FloatingLoad,
     /// `fdest, address`, optionally with `++`.
     FloatingStore,
-    /// `control, dest`: from a control register.
+    /// `control, dest`: reads a control register.
     LoadControl,
-    /// `src1, control`: into a control register.
+    /// `src1, control`: writes a control register.
     StoreControl,
-    /// `src1, fdest`: from an integer register to a floating-point one.
+    /// `src1, fdest`: copies an integer register to a floating-point register.
     ToFloating,
-    /// `fsrc1, dest`: from a floating-point register to an integer one.
+    /// `fsrc1, dest`: copies a floating-point register to an integer register.
     ToInteger,
     /// `address`, optionally with `++`.
     Flush,
-    /// `src1, src2, dest`, or no operand.
+    /// `src1, src2, dest`, or no operands.
     Trap,
-    /// `src1`: one integer register, such as the target of `bri`.
+    /// `src1`: one integer register, such as the target address of `bri`.
     Register,
-    /// `target`: a label or an address to branch to.
+    /// `target`: a label or an address as the branch target.
     Branch,
     /// `src1 or 5-bit constant, src2, target`.
     CompareBranch,
@@ -39,9 +39,9 @@ pub(crate) enum Syntax {
     LoopBranch,
     /// `fsrc1, fsrc2, fdest`: two floating-point sources and a destination.
     Three,
-    /// `fsrc1, fdest`: only the first source.
+    /// `fsrc1, fdest`: a single source in the first field, and a destination.
     First,
-    /// `fsrc2, fdest`: only the second source.
+    /// `fsrc2, fdest`: a single source in the second field, and a destination.
     Second,
 }
 
@@ -72,10 +72,10 @@ impl Syntax {
     }
 }
 
-/// Control registers by number.
+/// Names of the control registers, by register number.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
-/// Returns the bits of the register fields that this instruction uses.
+/// Returns the mask of the register fields that this instruction uses in its word.
 pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;

@@ -1,11 +1,11 @@
-//! Address translation: the TLB. Addresses stay unchanged; only the time of misses is charged.
+//! Address translation: the TLB. The model leaves addresses unchanged and only counts the clocks of TLB misses.
 
 use crate::cache::Tags;
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 
 const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
-/// Ways and sets of the TLB.
+/// Associativity of the TLB: number of entries in each set.
 const WAYS: usize = ChipSizes::PAPERS.tlb_ways as usize;
 const SETS: usize = ChipSizes::PAPERS.tlb_entries as usize / WAYS;
 
@@ -26,7 +26,7 @@ impl Translation {
         self.directory.is_some()
     }
 
-    /// Turns translation on with page tables at an address, or off with `None`.
+    /// Turns address translation on with the page directory at an address, or off with `None`.
     pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
         self.directory = directory;
     }
@@ -35,8 +35,8 @@ impl Translation {
         self.tlb.clear();
     }
 
-    /// Charges a TLB miss: the constant part, a read of the page directory and a read of a page table.
-    /// The page tables are assumed to follow the directory in memory.
+    /// Counts the clocks of a TLB miss: the constant part, a read of the page directory and a read of a page table. The
+    /// model assumes that the page tables follow the directory in memory.
     #[inline]
     pub(crate) fn translate(&mut self, address: u32, common: &mut Common) {
         if let Some(directory) = self.directory

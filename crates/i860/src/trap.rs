@@ -1,4 +1,4 @@
-//! Causes of traps, and ends of runs.
+//! Causes of traps, and ends of program runs.
 
 /// The cause of a trap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -7,10 +7,10 @@ pub enum TrapCause {
     /// A word that encodes no XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
-        /// The word that was fetched.
+        /// The instruction word that was fetched.
         word: u32,
     },
-    /// A pair whose halves are not one floating-point and one core instruction, in this order.
+    /// A pair that is not a floating-point instruction followed by a core instruction.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
     /// A branch in a delay slot (undefined on the real chip).
@@ -25,21 +25,21 @@ pub enum TrapCause {
     /// `intovr` was executed while OF was set.
     #[error("intovr with OF set")]
     Overflow,
-    /// No memory answered the instruction fetch.
+    /// A fetch from an address at which no memory answers.
     #[error("no memory to fetch an instruction from")]
     InstructionAccess,
-    /// No memory or device answered a load or store.
+    /// A load or store at an address at which no memory or device answers.
     #[error("no memory at {address:#010x}")]
     DataAccess {
         /// The physical address of the access.
         address: u32,
     },
-    /// The address of an access was not a multiple of its size.
+    /// A load or store at an address that is not a multiple of the access size.
     #[error("{address:#010x} is not a multiple of {size}")]
     Unaligned {
         /// The address of the access.
         address: u32,
-        /// The size in bytes.
+        /// The size of the access in bytes.
         size: u32,
     },
     /// The interrupt pin was raised while psr.IM was set.
@@ -47,19 +47,18 @@ pub enum TrapCause {
     Interrupt,
 }
 
-/// A trap that was taken. The processor is at the first instruction of the trap handler.
-/// Register fir holds `pc`. Register psr has the trap bit, PU, PIM, DIM and DS. The next pc is
-/// [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
+/// A trap that was taken. The next instruction is the first one of the trap handler. Register fir holds `pc`. Register
+/// psr has the trap bit, PU, PIM, DIM and DS. The next pc is [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
     pub cause: TrapCause,
-    /// Address of the instruction or pair, which had no effect.
-    /// If it was in a delay slot, the branch before it has changed r1, LCC and its counter, as on the real chip.
+    /// Address of the instruction or pair that has trapped and had no effect. If the instruction was in a delay slot,
+    /// the branch before it has changed r1, LCC and its counter, as on the real chip.
     pub pc: u32,
 }
 
-/// The end of a run.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunEnd {
     /// The stop address was reached in single-instruction mode. The instruction at the stop address was not executed.

@@ -5,8 +5,8 @@
 //!
 //! 1. Messages whose time has come join the queue of their source port.
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
-//!    message. If a word does not fit into its receiver, it stays in its slot and is offered again in the next tick. When
-//!    the last word has moved and the receiver has answered, channel and ports become free.
+//!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next tick.
+//!    When the last word has moved and the receiver has answered, channel and ports become free.
 //! 3. The first messages of the queues are granted while channels are free. They are sorted by the time at which they
 //!    became first, then by source. A message needs a source port with a free send channel, and a free destination that
 //!    is not reserved for another source. Messages to receivers with a FIFO use at most `fifo_channels`.

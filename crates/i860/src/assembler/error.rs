@@ -9,20 +9,20 @@ use std::fmt;
 pub struct AssemblyError {
     /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line number from 1. For text from a macro, the line of the macro call.
+    /// Line number of the error, counted from 1. For text from a macro, the line of the macro call.
     pub line: usize,
     /// Description of the error, with the expected and the found text.
     pub reason: String,
 }
 
-/// A broken rule that may be intended.
+/// A warning: the program breaks a rule, perhaps on purpose.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssemblyWarning {
     /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line number from 1. For text from a macro, the line of the macro call.
+    /// Line number of the warning, counted from 1. For text from a macro, the line of the macro call.
     pub line: usize,
-    /// The broken rule.
+    /// Rule that the program breaks.
     pub rule: Rule,
     /// Description of the warning, with the expected and the found text.
     pub reason: String,
@@ -34,11 +34,11 @@ impl fmt::Display for AssemblyWarning {
     }
 }
 
-/// All errors of a source.
+/// All errors of an assembler source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", lines(.0))]
 pub struct AssemblyErrors(
-    /// Errors in the order of their lines; there is at least one.
+    /// Errors sorted by source line. The list has at least one error.
     pub Vec<AssemblyError>,
 );
 

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-/// Values of labels and `.equ` symbols.
+/// Values of labels and of `.equ` constants, by name.
 pub(super) type Symbols = BTreeMap<String, i64>;
 
-/// Greatest nesting depth of an expression.
+/// Greatest nesting depth of a constant expression.
 const DEPTH: u32 = 64;
 
 struct Parser<'a> {
@@ -14,7 +14,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// Returns the value of an expression of numbers, symbols and operators, in 64 bits.
+/// Computes the value of an expression of numbers, symbols and operators, with 64 bits.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {
@@ -27,7 +27,7 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Binary operators by precedence, weakest first, without [`PRODUCTS`].
+/// Binary operators by precedence, the weakest level first. The strongest level is [`PRODUCTS`].
 const LEVELS: [&[&str]; 5] = [&["|"], &["^"], &["&"], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 

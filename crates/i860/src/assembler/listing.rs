@@ -4,11 +4,12 @@ use super::{Data, DataKind, Program};
 use crate::disassembler::disassemble;
 use std::fmt::Write as _;
 
-/// Width of the column of disassembled text; the source begins after it. Assumed: wider than nearly all instructions.
+/// Width of the column with the instruction text. The source begins after this column. Assumed: wider than nearly all
+/// instructions.
 const TEXT_COLUMNS: usize = 30;
 
 impl Program {
-    /// Returns the data at an address, or `None` for an instruction.
+    /// Returns the data directive that covers an address, or `None` for an instruction.
     #[must_use]
     pub fn data_at(&self, address: u32) -> Option<&Data> {
         let after = self.data.partition_point(|data| data.address <= address);
@@ -16,8 +17,7 @@ impl Program {
         (address.wrapping_sub(data.address) < data.bytes).then_some(data)
     }
 
-    /// Lists address, word, instruction or data of every word, with its line of `source`. Without a source the lines
-    /// are left out.
+    /// Lists every word with its address and its instruction or data. With `source`, the source line is added.
     ///
     /// ```
     /// let source = "start: mov 3, r5\nend: nop\ntable: .long 7";
@@ -45,7 +45,7 @@ impl Program {
         rows.text
     }
 
-    /// Returns the little-endian number of up to eight bytes at an address.
+    /// Returns the little-endian number in up to eight bytes at an address.
     fn number(&self, address: u32, bytes: u32) -> u64 {
         let from = address.wrapping_sub(self.base) as usize;
         let bytes = self.bytes.iter().skip(from).take(bytes as usize);
@@ -53,13 +53,13 @@ impl Program {
     }
 }
 
-/// The rows of a listing, with the state of its construction.
+/// A listing under construction.
 struct Rows<'a> {
     text: String,
-    /// Labels that are not listed yet, by address.
+    /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Source line of the previous row.
+    /// Source line number of the previous row of the listing.
     line: usize,
 }
 
@@ -100,7 +100,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns the text of an assembler directive that produces the data.
+/// Returns the assembler directive, as text, that produces the data.
 fn text(kind: DataKind, number: u64, bytes: u32) -> String {
     match kind {
         DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),

@@ -1,10 +1,10 @@
-//! Properties of operations that the scheduler needs: units, widths and latencies.
+//! Properties of the operations that the scheduler places: units, widths and latencies.
 
 /// The execution unit of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// The multiplier. With double sources its pipe has two stages, else three.
+    /// The multiplier. Its pipe has two stages for double-precision sources, else three.
     Multiplier {
         double: bool,
     },
@@ -23,7 +23,7 @@ impl Unit {
     }
 }
 
-/// Number and file of the registers of a value.
+/// Register file and register count of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Width {
     Integer,
@@ -42,17 +42,17 @@ impl Width {
     }
 }
 
-/// An operation as it is named in a linear stretch.
+/// The properties of an operation that linear code refers to by a name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,
     pub(super) mnemonic: &'static str,
     pub(super) result: Option<Width>,
-    /// Number of sources, without the address.
+    /// Number of source operands, without the address.
     pub(super) sources: usize,
-    /// True if the operation has an address.
+    /// True if the operation has a memory address.
     pub(super) addresses: bool,
-    /// Clocks from issue to the first use of the result, without freezes.
+    /// Number of clocks from the issue to the first possible use of the result, without freezes.
     pub(super) latency: u32,
 }
 
@@ -72,7 +72,7 @@ const ADDER: u32 = 4;
 const MULTIPLIER: u32 = 4;
 const MULTIPLIER_DOUBLE: u32 = 5;
 
-/// Returns the operation with a name of linear code, such as `mul.sd`.
+/// Returns the operation that has a name of linear code, such as `mul.sd`.
 pub(super) fn named(text: &str) -> Option<Name> {
     use Unit::{Adder, Graphics, Integer, Multiplier, Prefetch, Seed};
     use Width::{Double, Quad, Single};

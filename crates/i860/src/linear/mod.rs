@@ -57,28 +57,29 @@ mod settings;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
-/// An error in a linear stretch.
+/// An error in straight-line code between `.linear` and `.endlinear`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {reason}")]
 pub struct LinearError {
     pub line: usize,
-    /// Expected and found text.
+    /// Description of the error, with the expected and the found text.
     pub reason: String,
 }
 
-/// The number of operations of a stretch by half of a pair, and the length of its schedule in clocks without freezes.
+/// The number of operations in a stretch of linear code, for each half of a pair. Also the length of its schedule in
+/// clocks, without freezes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
-    /// Floating-point operations. A multiply with double sources counts twice, because the multiplier accepts one every
-    /// second clock.
+    /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
+    /// multiplier accepts one every second clock.
     pub floating: usize,
-    /// Core operations. No schedule is shorter than the greater of `floating` and `core`.
+    /// Number of core operations. A schedule has at least as many pairs as the greater of `floating` and `core`.
     pub core: usize,
-    /// Pairs of the schedule.
+    /// Number of pairs in the schedule.
     pub pairs: usize,
 }
 
-/// Returns the slots of each linear stretch of a source, in order.
+/// Returns the operation counts of each stretch of linear code in a source, in order.
 ///
 /// # Errors
 /// The errors of [`schedule`].
@@ -101,10 +102,10 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     Ok(found)
 }
 
-/// Replaces all linear stretches of a source by pairs. Other lines stay unchanged.
+/// Replaces every stretch of linear code in a source by instruction pairs. Other lines stay unchanged.
 ///
 /// # Errors
-/// [`LinearError`] for the first line with an error, or for a stretch whose values do not fit the registers.
+/// [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
 pub fn schedule(source: &str) -> Result<String, LinearError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(
@@ -121,7 +122,8 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
     Ok(out.into_inner())
 }
 
-/// Passes the operations of each stretch with their pairs to `linear`, and every other line to `other`, in order.
+/// Passes the operations of each stretch of linear code, with their pairs, to `linear`. Passes every other line to
+/// `other`. The order of the source is kept.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

@@ -1,34 +1,35 @@
-//! Parser of the text of a linear stretch.
+//! Parser of straight-line code that has no registers and no order, a *linear stretch* of an assembler source.
 
 use super::LinearError;
 use super::machine::{self, Name, Width};
 use super::settings::Settings;
 use std::collections::HashMap;
 
-/// An operand of an operation.
+/// An operand in linear code: a value of an earlier line, or a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// A value, by the number of its operation and one of its registers; `None` means all of its registers.
+    /// The value of an operation: index of the operation, and index of one register of the value. `None` means all of
+    /// its registers.
     Value(usize, Option<u8>),
-    /// A register or a constant, as written.
+    /// A register or a constant, as the text in the source.
     Text(String),
 }
 
-/// One line of a linear stretch: an operation with its operands.
+/// One line of linear code: an operation with its operands.
 #[derive(Clone, Debug)]
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of the address.
+    /// Offset and base register of a memory address.
     pub(super) address: Option<(String, Source)>,
-    /// Numbers of the stores that must come before this operation.
+    /// Indices of the stores that must come before this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which code after the stretch expects the result. No line of the stretch reads it.
+    /// Register in which later code expects the result, if any. No other line of the linear code reads this register.
     pub(super) register: Option<u8>,
 }
 
 impl Operation {
-    /// Returns the numbers of the operations whose values this operation reads.
+    /// Iterates over the indices of the operations whose values this operation reads.
     pub(super) fn reads(&self) -> impl Iterator<Item = usize> {
         let base = self.address.iter().map(|(_, base)| base);
         self.sources.iter().chain(base).filter_map(|source| match source {
@@ -42,14 +43,14 @@ fn error<T>(line: usize, reason: impl Into<String>) -> Result<T, LinearError> {
     Err(LinearError { line, reason: reason.into() })
 }
 
-/// Parses the registers of a `.pool` line.
+/// Parses the registers of a `.pool` line, which lists the integer registers that the scheduler can use.
 pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, LinearError> {
     let number = |text: &&str| text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| (1..32).contains(n));
     let found: Option<Vec<u8>> = registers.iter().map(number).collect();
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// Parses the parameters of a `.linear` line.
+/// Parses the parameters of a `.linear` line, the begin of linear code.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
@@ -65,7 +66,7 @@ pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearEr
     }
 }
 
-/// Parses the operations of a stretch.
+/// Parses the operations of one stretch of linear code.
 pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, LinearError> {
     let mut parser = Parser::default();
     for (line, text) in repeated(block)? {
@@ -78,7 +79,7 @@ fn without_comment(text: &str) -> &str {
     text.split("//").next().unwrap_or_default().trim()
 }
 
-/// Expands the `for` loops of a linear stretch.
+/// Expands the `for` loops in a stretch of linear code.
 fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, LinearError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)
@@ -217,7 +218,7 @@ fn integer_register(text: &str) -> Option<u8> {
     text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| *n < 32)
 }
 
-/// Splits off the mark before a store.
+/// Splits off the mark `@name` before a store. Later loads use the name to wait for the store.
 fn split_mark(text: &str) -> (&str, Option<&str>) {
     match text.strip_prefix('@').and_then(|text| text.split_once(char::is_whitespace)) {
         Some((mark, rest)) => (rest.trim(), Some(mark)),

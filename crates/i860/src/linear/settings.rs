@@ -1,19 +1,19 @@
-//! Parameters of a linear stretch.
+//! Parameters of the scheduler for one stretch of linear code.
 
-/// Parameters of the scheduler.
+/// Parameters of the scheduler for straight-line code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// Number of lines, from the first one that has not issued, that may issue.
+    /// Number of lines from which the scheduler chooses, counted from the first line that was not issued yet.
     pub(super) window: usize,
-    /// Threshold in clocks. The scheduler drains a pipe if a value in it is more urgent than the best operation by more
-    /// than this.
+    /// Threshold in clocks. A pipe is drained if one of its values is more urgent than the best operation by more than
+    /// this number of clocks.
     pub(super) eagerness: u32,
-    /// Registers of each file that only the first unissued line may take.
+    /// Number of registers in each file that only the first unissued line can use.
     pub(super) reserve: usize,
-    /// Additional reserved registers for each 64 lines of distance from the first unissued line, so that distant lines
-    /// wait when registers are scarce.
+    /// Number of additional reserved registers for each 64 lines of distance from the first unissued line. Distant
+    /// lines thus wait when registers are scarce.
     pub(super) slope: usize,
-    /// Seed of random changes of the priorities; 0 for none.
+    /// Seed of random changes to the priorities of operations. 0 means no changes.
     pub(super) shake: u32,
 }
 
