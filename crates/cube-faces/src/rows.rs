@@ -13,7 +13,7 @@ const LANES: usize = 4;
 
 /// Colours of one triangle on a face.
 pub(crate) enum Shade {
-    /// A constant colour.
+    /// One colour for the whole triangle.
     Flat(u32),
     /// Red, green and blue, each divided by w.
     Smooth([Linear; 3]),

@@ -33,7 +33,7 @@ pub enum Viewpoint {
     Dual(Interpolation),
 }
 
-/// The order in which regions are drawn.
+/// Drawing schedule: whether strips or blocks are drawn, and in which order.
 #[derive(Clone, Debug)]
 pub enum DrawingSchedule {
     /// Draws strips of a field from top to bottom.
@@ -57,10 +57,11 @@ pub enum DrawingSchedule {
     },
 }
 
-/// Timing of the beam: the time at which it reaches each pixel.
+/// Timing of the display's beam: the time at which the beam reaches each pixel.
 #[derive(Clone)]
 pub struct Beam {
-    /// Function from (field, row of the field, pixel) to the time of the beam.
+    /// Function from a field, a row of this field and a pixel of this row to the time at which the beam reaches the
+    /// pixel.
     at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
     /// Function from a field to the time of its retrace.
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
@@ -159,7 +160,7 @@ pub struct JitpConfig {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum JitpConfigError {
-    /// There is no slave GP.
+    /// The configuration has no slave GP.
     #[error("just-in-time pixels need a master and at least one slave GP, found no slave")]
     NoSlave,
     /// A strip or block has an invalid size.

@@ -1,4 +1,4 @@
-//! Times of this firmware that the processor's timing table lacks.
+//! Times of this firmware that the processor's timing table does not contain.
 
 parameters::parameter_table! {
     /// Times of just-in-time firmware.

@@ -69,7 +69,7 @@ pub struct PassStartWork {
     eyes: Vec<Arc<[PlacedStructure]>>,
     /// Number of bins to reset for each eye, 0 if there are no bins.
     bins: u32,
-    /// True for each structure to place, by its index in the display list; `None` places all.
+    /// For each structure, by its index in the display list: true if the work places it. `None` places all structures.
     chosen: Option<Arc<[bool]>>,
 }
 

@@ -73,7 +73,7 @@ struct RegionPart {
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    /// True if the message contains the end of the region: shading and the copy.
+    /// True if the message contains the commands at the end of the region: shading and copy.
     ends: bool,
 }
 

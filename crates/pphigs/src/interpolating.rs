@@ -27,7 +27,7 @@ const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 /// Work that records the positions of all triangles in two views, in a part of memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
-    /// Primitives of the graphics processor.
+    /// Primitives that the graphics processor holds.
     pub share: &'a Share,
     /// The first and the second view.
     pub views: [&'a FrameView; 2],
@@ -79,7 +79,7 @@ const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
 /// bounding boxes of the triangles near the strip and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
-    /// Primitives of the graphics processor.
+    /// Primitives that the graphics processor holds.
     pub share: &'a Share,
     /// The first and the second view. A [`TriangleEndsRecorder`] has recorded their triangles.
     pub views: [&'a FrameView; 2],

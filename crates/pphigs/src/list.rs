@@ -24,7 +24,7 @@ pub struct DisplayList {
     pub spheres: Vec<WorldSphere>,
     /// Structures, in the order of their triangles and of their spheres. No primitive lies between two structures.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light, in each structure's frame.
+    /// Unit vector towards the light source, in the frame of reference of each structure.
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
@@ -126,9 +126,9 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of triangles, as indices among those that the GP holds.
+    /// Range of the share's triangles, as indices among the triangles that the GP holds.
     triangles: Range<usize>,
-    /// Range of spheres, as indices among those that the GP holds.
+    /// Range of the share's spheres, as indices among the spheres that the GP holds.
     spheres: Range<usize>,
 }
 

@@ -52,7 +52,7 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// The buffer holds exactly the order. An order without a head takes no time.
+    /// The message buffer must hold exactly the words of the order. An order without a head takes no time.
     #[test]
     fn an_order_lies_in_the_buffer_word_for_word() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());

@@ -52,7 +52,7 @@ struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    /// True for each structure to include, by its index in the display list; `None` includes all.
+    /// For each structure, by its index in the display list: true if it is included. `None` includes all structures.
     chosen: Option<Box<[bool]>>,
 }
 
@@ -83,9 +83,9 @@ struct Found {
 
 /// A binning consumer that counts primitives.
 struct PrimitiveCounter {
-    /// For each region, the triangles that touch only that region.
+    /// For each region, the number of triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, all other primitives.
+    /// For each region, the numbers of all other primitives.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

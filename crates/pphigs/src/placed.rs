@@ -56,7 +56,7 @@ impl Default for RecentViews {
     }
 }
 
-/// A clone starts empty.
+/// A clone of the cache starts empty.
 impl Clone for RecentViews {
     fn clone(&self) -> Self {
         Self::keeping(self.kept)

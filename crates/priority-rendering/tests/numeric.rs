@@ -162,8 +162,8 @@ fn cases_23_and_24_cells_and_their_memories() {
     assert_eq!(dealing().memory(far), 3);
 }
 
-/// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside ring 1, 2
-/// and 4.
+/// Memory k begins outside ring q + 1 + g + ... + g^(k-2). With q = 1 and g = 2, memories 1 to 3 begin outside rings 1,
+/// 2 and 4.
 #[test]
 fn rings_that_double_begin_one_two_and_four_rings_away() {
     let doubling = CellAssignment { ring_growth: 2, ..dealing() };

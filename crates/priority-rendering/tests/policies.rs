@@ -65,7 +65,7 @@ fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
 /// Along a row of cells, the distance to the nearest side of the border determines the rates.
 ///
 /// In the middle half of the row, all lateral positions give equal rates. Near the row's edge, the second memory is
-/// drawn in every frame, because 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
+/// drawn in every frame. There, 2 x 5.3 m x sin(theta / 2) is less than the distance walked in a frame.
 #[test]
 fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
     let middle = rates(5.0, 0.0, 2.5);

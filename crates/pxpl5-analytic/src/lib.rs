@@ -16,11 +16,16 @@
 //! For Slats on several GPs, the model processes each message in the order in which the ring grants channels
 //! (`senders`). Other pipelines, displays other than NTSC, and heads with a tracker are errors.
 //!
-//! **Not modelled:** channels used by pixels; interrupts of a GP by messages of other boards; words of a clump's last
-//! message besides its primitives; the host's own messages (a mean rate replaces them); views after the first one
-//! (Slats); memory.
-//!
 //! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
+//!
+//! # Not modelled
+//!
+//! - Channels that pixels use.
+//! - Interrupts of a GP by messages of other boards.
+//! - Words of a clump's last message besides its primitives.
+//! - The host's own messages. A mean rate replaces them.
+//! - Views after the first one (Slats).
+//! - Memory.
 
 mod clumps;
 mod copies;
@@ -42,7 +47,7 @@ use pxpl5_scene::Scene;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Registers the closed forms of the pipelines that have one.
+/// Registers the closed forms of Slats and of Rendering Control.
 pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("rendering-control", rendering_control::CLOSED_FORM);
     registry.closed_form("slats", slats::CLOSED_FORM);

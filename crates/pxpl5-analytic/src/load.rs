@@ -22,7 +22,7 @@ pub struct Load {
     pub structures: f64,
     /// Number of structures that contain spheres.
     pub sphere_views: f64,
-    /// Numbers of triangles and spheres in the bin of each region.
+    /// For each region, the number of triangles and the number of spheres in its bin.
     pub bins: Vec<[f64; 2]>,
 }
 

@@ -76,7 +76,7 @@ struct History {
     transformed: Vec<f64>,
     rendered: Vec<f64>,
     copied: Vec<f64>,
-    /// Bytes of a slave's bins for the previous picture.
+    /// Bytes of the bins that a slave has filled for the previous picture.
     bin_bytes: f64,
     /// Time from the moment at which the first slave has freed its bins to the moment at which the last slave has freed
     /// its bins.

@@ -67,7 +67,7 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Computes fields of machines with one GP and the same structure.
+/// Computes a field on each of `N` machines. All have one GP and equal values of [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -244,7 +244,8 @@ mod tests {
     }
 
     proptest! {
-        /// Results are bit-identical for any number of machines, including machines with different structures.
+        /// Results must be bit-identical to those of single machines, for any number of machines, even with different
+        /// structures.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

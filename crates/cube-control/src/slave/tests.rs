@@ -12,11 +12,11 @@ use pxpl5_wire::{CopyContent, Lines, Message, RegionGrid, ViewNumber};
 
 const MASTER: NodeId = NodeId(1);
 const BOARD: NodeId = NodeId(2);
-/// Number of triangles in the display list. All lie completely in one region of one face.
+/// Number of triangles in the display list. All of them lie within one region of one face.
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
-/// The only token of an update, at the last slave.
+/// The only token of an update, when it reaches the last slave.
 pub(crate) const TOKEN: Token =
     Token { update: PictureNumber::FIRST, region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, copies: true };
 
@@ -117,7 +117,8 @@ impl Rig {
         }
     }
 
-    /// Returns the updates that the slave reported as transformed, with the number of entries in all their bins.
+    /// Returns the updates that the slave has reported as transformed. Each has its number of bin entries, summed over
+    /// all regions.
     fn transformed(&self) -> Vec<(u64, u32)> {
         let to_master = self.bench.sent().filter_map(|(time, message)| {
             let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
@@ -141,7 +142,7 @@ fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
     assert_eq!(rig.bench.board.memory_peak_bytes(), expected);
 }
 
-/// The board has memory for the bins of one update, in either of the two contexts.
+/// The board has memory for the bins of only one update, in either of the two contexts.
 #[test]
 fn an_update_waits_until_the_bins_of_the_one_before_are_free() {
     let mut rig = Rig::new(BIN_BYTES);
@@ -169,7 +170,7 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
     assert_eq!(rig.bench.board.fault(), Some(&Fault::Memory(fault)));
 }
 
-/// Returns the complete memory of a board that runs i860 code.
+/// Returns all words in the memory of a board that runs i860 code.
 fn memory(processor: &Processor) -> Vec<u32> {
     processor.read(0, processor.memory_bytes() as usize / 4).expect("all of it")
 }
@@ -197,10 +198,10 @@ fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() 
     }
 }
 
-/// Measures the time that a further triangle adds to TRANSFORM for six faces, with the scheduled code.
+/// Measures the time that one more triangle adds to TRANSFORM for six faces, with the scheduled code.
 ///
-/// The triangle touches one face. Published times range from 870 clocks of optimized code without extras to the design
-/// figure of 32 us.
+/// The triangle touches one face. Published times range from 870 clocks (optimized code without extras) to 32 us (the
+/// design figure).
 #[test]
 fn by_code_a_triangle_takes_what_was_published() {
     let ns = |triangles: usize| {

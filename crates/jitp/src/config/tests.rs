@@ -1,8 +1,9 @@
-//! Tests of strips, instants and leads against closed forms, for a beam with equal times for all lines.
+//! Compares strips, the times for which they are drawn, and lead times with formulas, for a beam with equal times for
+//! all lines.
 
 use super::*;
 
-/// Time from one field to the next.
+/// Duration from the start of one field to the start of the next, in picoseconds.
 const FIELD: u64 = 16_000_000;
 const ROW: u64 = 60_000;
 const PIXEL: u64 = 80;

@@ -1,4 +1,5 @@
-//! Tests that the primitives and messages found by code equal those of the native firmware, for any scene and windows.
+//! Tests of the search by i860 code. Its primitives and messages must equal those of the native firmware, for any scene
+//! and windows.
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window, interpolated};
@@ -20,7 +21,7 @@ use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, RegionId, ViewNumber, Word
 use std::sync::Arc;
 
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
-/// Half the picture's height at distance 1.
+/// Half the picture's height at distance 1 from the eye.
 const TANGENT: f32 = 0.5;
 
 struct Numbers(SplitMix64);
@@ -39,16 +40,17 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
-    /// Returns a point that is seen at a place of the frame, 640 x 480 pixels.
+    /// Returns the point that appears at pixel (x, y) of a frame of 640 x 480 pixels.
     fn seen_at([x, y]: [f32; 2], distance: f32) -> Vec3 {
         let across = (x / 320.0 - 1.0) * TANGENT * 4.0 / 3.0;
         Vec3::new(across, (1.0 - y / 240.0) * TANGENT, -1.0) * distance
     }
 
-    /// Returns the corners of a triangle: small ones anywhere or at the meeting point of four regions, slivers, large
-    /// ones, some beside the eye.
+    /// Returns the corners of a random triangle. It can be small, a sliver, large, or beside the eye. Small triangles
+    /// are anywhere in the picture, or where four regions meet.
     ///
-    /// No sliver is so deep that its plane of depth is flattened, since kernels flatten only planes of clipped pieces.
+    /// No sliver extends so far in depth that its depth plane would be flattened, since kernels flatten only the planes
+    /// of clipped pieces.
     fn triangle(&mut self) -> [Vec3; 3] {
         let [x, y] = match self.below(4) {
             0 => [128.0 * (1 + self.below(4)) as f32, 120.0 * (1 + self.below(3)) as f32],
@@ -126,7 +128,7 @@ fn strips(strip_rows: u32) -> JitpConfig {
     config(DrawingSchedule::Beam { viewpoint: Viewpoint::Field, racing: false, strip_rows })
 }
 
-/// Returns a view and a second view turned by about `turn` radians, with a turned structure.
+/// Returns two views. The second view is rotated by about `turn` radians, and a structure in it is rotated, too.
 fn two_views(numbers: &mut Numbers, turn: f32) -> [FrameView; 2] {
     [0.0, turn].map(|turn| {
         let mut view = view(numbers);
@@ -141,7 +143,7 @@ fn blocks(block: u32) -> JitpConfig {
     config(DrawingSchedule::Roam { block, batch: 16, order: BlockOrder::new(|step| RegionId(step as u16)) })
 }
 
-/// A board, a scene, and a kept picture of it.
+/// A board, a scene, and the stored picture of the scene in the board's memory.
 struct Scene {
     processor: Processor,
     share: Share,
@@ -171,7 +173,7 @@ impl Scene {
         scene
     }
 
-    /// Records the scene in two views, `turn` radians apart.
+    /// Stores the positions of the scene's triangles in two views that differ by a rotation of `turn` radians.
     fn between(&mut self, seed: u64, turn: f32, interpolation: Interpolation) -> Ends {
         let views = two_views(&mut Numbers(SplitMix64::new(seed)), turn).to_vec();
         self.keep(&views);
@@ -179,7 +181,8 @@ impl Scene {
         Ends::new(self.share.list(), views, self.viewport)
     }
 
-    /// Interpolates a strip at position `s` between two views, searches it, and compares it with the native messages.
+    /// Interpolates a strip at position `s` between two views, and searches its primitives. Compares the result with
+    /// the native messages.
     fn search_between(&mut self, ends: &Ends, s: f64, strip: u32) -> SearchOutput {
         let interpolation = self.interpolation.expect("between two views");
         self.drawn = Arc::new(DrawnList::between(self.share.list(), ends, s, interpolation, self.viewport));
@@ -207,7 +210,7 @@ impl Scene {
         whole.by_code(&GpTiming::PAPERS, &mut self.processor).expect("it returns");
     }
 
-    /// Searches some regions and compares the listed messages with the native ones.
+    /// Searches the primitives of some regions, and compares the listed messages with the native messages.
     fn search(&mut self, regions: &[RegionId]) -> SearchOutput {
         let windows = self.windows(regions);
         let (counts, _) = self.drawn.count(&windows);
@@ -240,7 +243,7 @@ impl Scene {
         output
     }
 
-    /// Compares all words except the envelope of a region, which is not in memory.
+    /// Compares all words of a message, except the commands of the region's envelope, which are not in memory.
     fn assert_words(&self, pieces: &[[Word; 2]], native: &[Word], region: RegionId) {
         let mut native = native;
         for [address, length] in pieces {
@@ -278,7 +281,7 @@ fn what_code_finds_on_a_strip_is_what_the_native_firmware_draws() {
     }
 }
 
-/// Blocks of 24 pixels cross the borders of the picture's regions.
+/// Blocks of 24 x 24 pixels cross the borders of the picture's regions.
 #[test]
 fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     for (seed, block) in [16, 24, 128].into_iter().enumerate() {
@@ -294,7 +297,7 @@ fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     }
 }
 
-/// More windows than fit in the tables, and a region of many messages.
+/// Tests more windows than fit in the tables at once, and a region with many messages.
 #[test]
 fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
@@ -317,7 +320,8 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
     }
 }
 
-/// Small and large turns, with curved paths of corners on the screen, including positions before the first view.
+/// Tests small and large rotations, in which corners move on curved paths on the screen. Some positions are before the
+/// first view.
 #[test]
 fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
@@ -335,8 +339,8 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
     }
 }
 
-/// A structure and the view turn together, so that paths on the screen curve and leave the lines taken to be near a
-/// strip.
+/// A structure and the view rotate together. The corners' paths on the screen curve so much that they leave the lines
+/// that count as near a strip.
 #[test]
 fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     let config = strips(1);
@@ -356,7 +360,7 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     }
 }
 
-/// A board pays for a strip between two views: its interpolation, then the search.
+/// A board spends time for two steps of a strip between two views: the interpolation, then the search.
 #[test]
 fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     let spans = [false, true].map(|is_one_work| {
@@ -383,8 +387,9 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     assert_eq!(spans[0], spans[1]);
 }
 
-/// If the view and a structure turn together, paths on the screen curve: by 7 pixels at the top and the bottom for 20
-/// degrees each about the line of sight. Triangles that are far from a strip at both ends must not meet it in between.
+/// A view and a structure rotate together about the line of sight, by 20 degrees each. Paths on the screen then curve
+/// by 7 pixels at the top and the bottom. A triangle that is far from a strip in both views must not touch the strip in
+/// between.
 #[test]
 fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
     let config = strips(1);

@@ -42,8 +42,8 @@ fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
     sent.map(|(time, received)| (time, DrawingOrder::read(&received, SLAVE).expect("an order"))).collect()
 }
 
-/// A field has two strips of 120 rows. One slave has the time of one strip and a margin. With code its field is ordered
-/// one more field earlier.
+/// A field has two strips of 120 rows. The only slave has the time of one strip and a margin for each strip. If the
+/// boards run i860 code, the order for a field is sent one field earlier.
 #[test]
 fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     const MARGIN_US: u64 = 400;
@@ -59,7 +59,8 @@ fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     assert!(fields > 3, "{fields}");
 }
 
-/// If the beam reaches all strips at the same time and there is no margin, each order would be due at its deadline.
+/// The beam reaches all strips at the same time, and there is no margin. Each order would therefore be due exactly at
+/// its deadline.
 #[test]
 fn no_strip_is_ordered_when_its_beam_is_there() {
     let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);

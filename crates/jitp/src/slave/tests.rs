@@ -1,4 +1,4 @@
-//! Tests of a slave on its board: the fields that it keeps and the strips that it draws.
+//! Tests of a slave on its board: the fields that it stores, and the strips that it draws.
 
 use super::*;
 use crate::config::Interpolation;
@@ -46,14 +46,14 @@ fn order_of_strip(field: u64, deadline: Time, view: Option<FrameView>) -> Drawin
 
 const LATE: Time = us(1_000_000);
 
-/// Returns the number of messages to the renderer after `us` microseconds.
+/// Runs for `us` microseconds, and returns the number of messages that were sent to the renderer in this time.
 fn drawn_after(rig: &mut Rig, us: u64) -> usize {
     let before = rig.sent_to(RENDERER).len();
     rig.run_to(rig.us + us);
     rig.sent_to(RENDERER).len() - before
 }
 
-/// A strip of a field in transformation must be drawn when the field is ready.
+/// If the field of a strip is still being transformed, the strip must be drawn as soon as the field is ready.
 #[test]
 fn a_strip_waits_for_the_transforms_of_its_field() {
     let (mut rig, _) = slave_of(Viewpoint::Field);
@@ -78,8 +78,8 @@ fn the_last_three_fields_stay_transformed() {
     }
 }
 
-/// Each kept field and the next one have their own parts of memory. If strips are between two views, the last part is
-/// for them.
+/// Each stored field and the next field have their own parts of memory. If strips are interpolated between two views,
+/// the last part is for these strips.
 #[test]
 fn fields_that_stay_transformed_lie_apart() {
     assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
@@ -97,7 +97,7 @@ fn fields_that_stay_transformed_lie_apart() {
     }
 }
 
-/// If strips are drawn between two views but only one view is ordered, that view must be used.
+/// Strips are normally interpolated between two views. If an order has only one view, this view must be used.
 #[test]
 fn a_field_of_one_view_is_drawn_from_it() {
     let messages = [Viewpoint::Field, DUAL].map(|viewpoint| {
@@ -109,8 +109,8 @@ fn a_field_of_one_view_is_drawn_from_it() {
     assert!(messages[0] > 0 && messages[0] == messages[1], "{messages:?}");
 }
 
-/// After a message, a pass and its triangles the strip is transformed. It must be drawn only if this instant is before
-/// its deadline.
+/// TRANSFORM of a strip ends after the times of a message, a pass and its triangles. The strip must be drawn only if
+/// TRANSFORM ends before the strip's deadline.
 #[test]
 fn a_strip_that_is_transformed_when_its_beam_is_there_is_not_drawn() {
     let timing = GpTiming::PAPERS;

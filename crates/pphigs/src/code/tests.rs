@@ -1,4 +1,4 @@
-//! Tests of the addresses of programs.
+//! Tests of the addresses in programs.
 
 use super::*;
 use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKEN_CODE, WINDOWS, WINDOWS_CODE};
@@ -7,7 +7,7 @@ use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
 const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
 const BOTH: [bool; 2] = [false, true];
-/// Combinations of: bins are filled, and boxes are kept.
+/// Combinations of two properties of a kernel: it fills bins, and it stores bounding boxes.
 const BINS: [(bool, bool); 3] = [(true, false), (false, false), (false, true)];
 const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
 
@@ -37,7 +37,8 @@ fn end(program: &Program) -> u32 {
     program.base + program.bytes.len() as u32
 }
 
-/// Tests that a breakpoint in one program occurs in no other, and that the assembler gives no warnings.
+/// Tests that the programs of a board do not overlap in memory, so that a breakpoint lies in only one of them. Also
+/// tests that the assembler gives no warnings.
 #[test]
 fn no_two_programs_of_a_board_lie_in_the_same_place() {
     for kernel in kernels().filter(Kernel::can_serve_both_eyes) {

@@ -1,4 +1,5 @@
-//! Tests of a leading processor alone on its board: its messages and their times, for any answers of the renderers.
+//! Tests of a leading processor that is alone on its board: its messages and their times, for different
+//! acknowledgements of the renderers.
 
 use super::*;
 use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning, Shading};
@@ -11,25 +12,25 @@ use pxpl5_wire::{Message, ViewNumber, read_swap_request};
 const BOARD: NodeId = NodeId(1);
 const FRAME_BUFFERS: [NodeId; 2] = [NodeId(2), NodeId(3)];
 const FIRST_RENDERER: u16 = 10;
-/// Number of renderers: one for each region, and some without regions.
+/// Number of renderers. Each region has its own renderer, and some renderers have no region.
 const RENDERERS: u16 = 24;
 const REGIONS: u64 = 20;
 const CYCLE: Span = Span(25_000);
-/// Length of a field in ms.
+/// Duration of a field in milliseconds.
 const FIELD_MS: u64 = 20;
 
 const fn us(us: u64) -> Time {
     Time(us * 1_000_000)
 }
 
-/// A board on a bench; its messages are accepted from a given instant on.
+/// A board on a bench. From a given time on, its messages are accepted.
 struct Rig {
     bench: BoardBench,
     us: u64,
 }
 
 impl Rig {
-    /// Creates a bench on which a view has arrived, for invisible triangles.
+    /// Creates a bench with a display list of invisible triangles. The first view has already arrived.
     fn new(copy: CopySchedule, triangles: usize) -> Self {
         let config = SlatsConfig {
             host: NodeId(0),
@@ -75,7 +76,8 @@ impl Rig {
         self.bench.feed(us(self.us), GpEvent::Delivered(message));
     }
 
-    /// Runs to an instant, with a retrace at the start of each field. Messages are accepted from `accepting_us` on.
+    /// Runs to the time `until_us`, with a retrace at the start of each field. Messages are accepted from
+    /// `accepting_us` on.
     fn run_to(&mut self, until_us: u64, accepting_us: u64) {
         while self.us < until_us {
             self.us += 10;
@@ -93,7 +95,7 @@ impl Rig {
     }
 }
 
-/// A request to frame buffers or renderers about one of the two buffers.
+/// A request that names one of the two buffers, to frame buffers or renderers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Asked {
     Show(u8),
@@ -108,9 +110,10 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// At each retrace, the last complete field of the next period's lines is requested. A field goes into the other
-/// buffer. It is requested when its top regions have been copied before its retrace, and before the bottom regions
-/// occupy the ports of the frame buffers. After a late field, the next one has the other lines.
+/// At each retrace, the processor requests the last complete field of those lines that the next period scans. A new
+/// field is written into the other buffer. Its display is requested if its top regions have been copied before its
+/// retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame buffers. After
+/// a late field, the next field has the other lines.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
@@ -148,8 +151,8 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     assert_eq!(found, expected.concat());
 }
 
-/// There is one clump buffer: the next clump is made when all receivers have begun to take the previous one, at 30 us
-/// per triangle and eye.
+/// There is one clump buffer. The next clump is made when all receivers have begun to take the previous one. It takes
+/// 30 us for each triangle and eye.
 #[test]
 fn the_next_clump_is_made_while_the_one_before_is_drained() {
     const SECOND: usize = 7;
@@ -165,7 +168,7 @@ fn the_next_clump_is_made_while_the_one_before_is_drained() {
     assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
 }
 
-/// Returns the times at which copies of regions of the lower half are ordered.
+/// Returns the times at which copies of the bottom regions are ordered.
 fn bottom_orders(rig: &Rig) -> Vec<Time> {
     let is_bottom = |message: &Message| match &message.body {
         Body::Commands(list) => list.copies.first().is_some_and(|order| u32::from(order.target.region.0) >= 5),
@@ -174,7 +177,8 @@ fn bottom_orders(rig: &Rig) -> Vec<Time> {
     rig.bench.sent().filter(|(_, message)| is_bottom(message)).map(|(time, _)| time).collect()
 }
 
-/// All ten top regions are on different renderers. Each acknowledgement is a message that the processor must handle.
+/// All ten top regions are on different renderers. Each renderer acknowledges its copy by a message, which the
+/// processor must handle.
 #[test]
 fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_retrace_has_been() {
     let acknowledge = |rig: &mut Rig, count| {
@@ -201,7 +205,8 @@ fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_re
     assert_eq!(bottom_orders(&rig), [us(40_000) + CYCLE; 10]);
 }
 
-/// Messages that clear the bottom regions for the next field must wait until these regions are being copied.
+/// The first messages of the next field clear the bottom regions. They must wait until the copies of these regions have
+/// started.
 #[test]
 fn the_next_field_is_not_drawn_over_regions_that_are_not_copied() {
     let mut rig = Rig::new(CopySchedule::Split, 3);
