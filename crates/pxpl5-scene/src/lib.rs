@@ -1,4 +1,4 @@
-//! Input of the machine: scenes, model files, the head-mounted display and the motion of the head.
+//! Inputs of the emulated machine: scenes, model files, the head-mounted display and the motion of the head.
 //!
 //! ```text
 //!  load("x.ply") --+                 +--> vertices, triangles, spheres   --> processors, once
@@ -9,12 +9,12 @@
 //!
 //! # Behaviour
 //!
-//! - A [`Scene`] is a display list of indexed triangles, with a normal and a colour for each vertex, and of spheres. A
-//!   *structure* is a named run of triangles and spheres with one model matrix. An [`Edit`] replaces a model matrix,
-//!   and [`Scene::edits_at`] returns the scripted edits of a frame.
+//! - A [`Scene`] is a display list of spheres and indexed triangles. Each vertex has a normal and a colour. A *structure*
+//!   is a named part of the display list with one model matrix. An [`Edit`] is a new model matrix for a structure.
+//!   [`Scene::edits_at`] returns the edits of a frame for structures with a motion of their own.
 //! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. No input makes [`from_bytes`]
-//!   panic. `load` reads a file of the host. Without the feature `files` the crate makes no calls to the operating
-//!   system and builds for a browser.
+//!   panic. `load` reads a file of the host and needs the feature `files`. Without this feature, the crate makes no
+//!   calls to the operating system and can be compiled for a browser.
 //! - [`builtin`] generates the scenes of the published measurements, or similar scenes:
 //!
 //! | name | triangles | spheres | provenance of the counts |

@@ -1,5 +1,5 @@
-//! Head motion, tracker models and pose prediction for head-mounted displays, with the pixel errors of a wrong pose and
-//! a latency measurement from outside the machine.
+//! Head motion, tracker models and pose prediction for head-mounted displays. The crate also computes pixel errors of a
+//! wrong pose, and measures latency from outside the machine.
 //!
 //! ```text
 //!  motion ──pose(t)──▶ tracker ──▶ cable ──▶ host port ──Report──▶ predict ──pose(t')──▶ view
@@ -12,12 +12,13 @@
 //! # Modules, in the order of the signal
 //!
 //! 1. [`motion`]: the pose of the head as a pure function of simulated time. A head can stand still, pan, swing as a
-//!    pendulum, walk, follow a random generator fitted to recorded headset use, or replay a recorded file.
-//! 2. [`tracker`]: the tracker measures a pose at its own rate and adds noise, metal distortion and filter delay. The
-//!    serial cable sends one record at a time, so the tracker drops measurements when a transfer takes longer than its
+//!    pendulum or walk. It can also move at random with the statistics of recorded headset use, or replay a recorded
+//!    file.
+//! 2. [`tracker`]: the tracker measures poses at its own rate. It adds noise, metal distortion and filter delay. The
+//!    serial cable carries one record at a time, so the tracker drops measurements if a transfer takes longer than its
 //!    period. The host's kernel polls the serial port. Experiments can inject faults.
-//! 3. [`predict`]: a gate rejects and counts impossible reports. A filter then predicts the pose at an exact instant.
-//! 4. [`view`]: converts a pose error into pixels, and has the mathematics of the dual display list, of the raster
+//! 3. [`predict`]: a check rejects and counts impossible reports. A filter then predicts the pose at an exact instant.
+//! 4. [`view`]: converts a pose error into pixels. It also has the formulas of the dual display list, of the raster
 //!    offset and of frameless rendering.
 //! 5. [`rig`]: a pendulum that measures tracking latency and rendering latency from outside the machine.
 //!
@@ -25,10 +26,11 @@
 //!
 //! Instants and spans are picoseconds of simulated time in `u64` (suffix `_ps`). Only differences become floating
 //! point. Lengths are metres. Angles are degrees in settings and radians in vectors. Axes are right-handed with y up,
-//! and a head looks along its own -z axis. A quaternion rotates head axes into world axes. The same seed gives the same
-//! numbers on every host: all transcendental functions come from `libm`, and each random number is a function of (seed,
-//! index). The tables of [`config`] hold every number that describes hardware or people, with unit, source, provenance
-//! and range.
+//! and a head looks along its own -z axis. A quaternion rotates head axes into world axes.
+//!
+//! The same seed gives the same numbers on every host. All transcendental functions come from `libm`, and each random
+//! number is a function of (seed, index). The tables of [`config`] hold every number that describes hardware or people,
+//! with unit, source, provenance and range.
 //!
 //! ```
 //! use tracking::motion::Synthetic;
@@ -48,21 +50,23 @@
 //!
 //! # Not modelled
 //!
-//! - The field of a magnetic tracker: the distortion is a smooth bowl. The sight lines of the optical tracker are
-//!   missing too.
-//! - Coloured noise: all noise is white. The tracker's filter therefore performs better than a real one, and slow drift
-//!   is missing.
-//! - Records of other receivers: they only take time on the cable. The head's record goes first.
+//! - The field of a magnetic tracker. The distortion is a smooth bowl.
+//! - The sight lines of the optical tracker.
+//! - Coloured noise. All noise is white, so the tracker's filter performs better than a real one, and slow drift is
+//!   missing.
+//! - The contents of other receivers' records. They only take time on the cable, and the head's record goes first.
 //! - Clock drift between tracker and host. Only the phase of the host's polling is random.
-//! - Inertial sensors, and the statistical correlation between translation and rotation in the synthetic motion.
-//! - The neck: a pan rotates the eye about its own position.
+//! - Inertial sensors.
+//! - The statistical correlation between translation and rotation in the random motion.
+//! - The neck. A pan rotates the eye about its own position.
 //! - Damping of the pendulum, and the response times of photodiodes.
 //!
 //! # Sources
 //!
-//! See [`config`]. Prediction: Azuma and Bishop 1995. Just-in-time pixels: Mine and Bishop, UNC TR93-005. Raster
-//! offset: Breglia 1981. Frameless rendering: Bishop, Fuchs, McMillan and Scher Zagier 1994. The rig: Cohen and Olano,
-//! UNC TR94-028. Elliptic functions: Abramowitz and Stegun 16 and 17.
+//! [`config`] lists the sources of all numbers. Prediction is by Azuma and Bishop 1995, just-in-time pixels by Mine and
+//! Bishop, UNC TR93-005. The raster offset is by Breglia 1981, and frameless rendering by Bishop, Fuchs, McMillan and
+//! Scher Zagier 1994. The rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and Stegun,
+//! chapters 16 and 17.
 
 #![warn(missing_docs)]
 
