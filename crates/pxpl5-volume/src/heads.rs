@@ -106,7 +106,7 @@ pub struct HeadStudyConfig {
     pub instants: u32,
 }
 
-/// A volume, with a moving head before it, for comparison with a head-mounted display.
+/// A moving head before a volume, for the comparison of the volume with a head-mounted display.
 #[derive(Debug)]
 pub struct HeadComparison<'a> {
     volume: &'a Volume,
