@@ -55,9 +55,9 @@
 //!
 //! | instant | time |
 //! |---|---|
-//! | a pixel lights | as in the NTSC frame buffer |
+//! | a pixel is displayed | as in the NTSC frame buffer |
 //! | its texels are read | 2 + ceil(log2 n) stages before, n memories |
-//! | its orientation is latched | 8 + 16 + ceil(log2 n) stages before it, its line's or its field's first pixel: 650 ns for n = 4 |
+//! | its orientation is read (latched) | 8 + 16 + ceil(log2 n) stages before it, its line's or its field's first pixel: 650 ns for n = 4 |
 //!
 //! # Reference model and fast model
 //!

@@ -302,8 +302,8 @@ impl Drop for Lookup<'_> {
     }
 }
 
-/// Computes a group of texels and the following texel. Each is the texel of the nearest memory, or the background if
-/// all memories are empty.
+/// Computes the colours of a group of texels and of the following texel. Each colour comes from the nearest memory, or
+/// from the background if all memories are empty.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
     let piece = |words: &[u64]| words[start..].first_chunk::<PIECE>().copied().unwrap_or([0; PIECE]);

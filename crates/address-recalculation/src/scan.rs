@@ -15,7 +15,7 @@ pub enum Latch {
     Field,
     /// The first visible pixel of each line.
     Line,
-    /// Each single pixel.
+    /// Each visible pixel of a line.
     Pixel,
 }
 

@@ -162,8 +162,8 @@ fn a_map_has_a_bit_for_each_region_of_the_six_faces() {
     }
 }
 
-/// Checks two overlapping sets of memories. If another update of the first memory counted as the set's update, the
-/// set's real update would wait forever.
+/// Checks two memories, of which the second waits to swap together with the first. The first memory shows an update of
+/// its own first. If this update counted as the common update, the common update would wait forever.
 #[test]
 fn an_update_of_another_set_does_not_stand_for_one_of_this() {
     let mut bench = Bench::new(&CONFIG);

@@ -1,5 +1,6 @@
 //! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that the code computes
-//! or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. It has no verdict.
+//! or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A definition has
+//! no verdict.
 
 use crate::timing::PerspectaConfig;
 use parameters::Standing;
@@ -97,7 +98,7 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. It is printed if its id begins with P, and otherwise derived.
+/// Returns a definition. Its number is printed in the paper if `id` begins with P, and otherwise derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
 }
@@ -165,7 +166,7 @@ pub fn formulas() -> Vec<Figure> {
     figures
 }
 
-/// Returns figures that compare the counts of a volume with the paper's statements about most scenes.
+/// Returns figures that compare the counts of a volume with the paper's statements about "most scenes".
 #[must_use]
 pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
     let occupancy = Figure {
@@ -217,8 +218,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the disc. This mean is the area of one slice's slab within
-/// the disc, times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's slab
+/// within the disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;

@@ -13,7 +13,7 @@ pub struct Content {
     pub eye: DVec3,
     /// Frame at whose start the eye had this position.
     pub frame: u64,
-    /// Indices of the segments in the memory.
+    /// Indices of the segments that the memory contains.
     pub segments: Vec<usize>,
     /// Displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the index of this
     /// memory.

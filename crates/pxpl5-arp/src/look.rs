@@ -54,7 +54,7 @@ impl Faces {
         self
     }
 
-    /// Returns the picture for one head orientation, which applies to the whole picture.
+    /// Returns the picture that the eye sees. One head orientation applies to the whole picture.
     ///
     /// # Errors
     ///
@@ -86,7 +86,8 @@ impl Faces {
     }
 }
 
-/// Returns a picture of the given width from pixels in row order.
+/// Returns a picture of the given width from values of its pixels in row order. `colour` converts each value to a
+/// colour.
 pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
     let height = pixels.len() as u32 / width;
     RgbImage::from_fn(width, height, |x, y| rgb(colour(&pixels[(y * width + x) as usize])))

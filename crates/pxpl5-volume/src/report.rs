@@ -52,7 +52,7 @@ pub struct VolumeReport {
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
-    /// Number of tiles with a drawn pixel, summed over all batches of slices.
+    /// Number of tiles in which a pixel was drawn, summed over all batches of slices.
     pub tiles_occupied: u64,
     /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,

@@ -1,4 +1,5 @@
-//! Host time of a volume of 198 distinct slices of the head scene. Measurements to be compared run in one process.
+//! Measures the host time of a volume of 198 distinct slices of the head scene. Measurements that are compared run in
+//! one process.
 #![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};

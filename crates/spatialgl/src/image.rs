@@ -75,8 +75,8 @@ impl SliceImage {
         }
     }
 
-    /// Returns eight values of each channel, from index `at` on. The leftmost pixel is in the lowest byte. `at` is a
-    /// multiple of 8.
+    /// Returns eight values of each channel, from pixel index `at` on. The leftmost pixel is in the lowest byte. `at`
+    /// is a multiple of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, at: usize) -> [u64; 3] {
         [0, 1, 2].map(|c| {
@@ -150,7 +150,7 @@ impl SliceImage {
         self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
     }
 
-    /// Draws a pixel if no fragment was drawn on it before. Returns true if the pixel was drawn.
+    /// Draws a pixel if no fragment was drawn on it before. Returns true if this call drew the pixel.
     pub(crate) fn fill_gap(&mut self, x: f64, y: f64, colour: [u8; 3]) -> bool {
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
         let is_gap = inside && !self.is_marked(x as u32, y as u32);

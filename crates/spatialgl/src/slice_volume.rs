@@ -43,7 +43,8 @@ impl TieRule {
     }
 }
 
-/// The two boundary planes of a wedge. Both contain the axis y, so their coefficients of x and z define them.
+/// The two boundary planes of a wedge. Both contain the axis y, so each plane is defined by its coefficients of x and
+/// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
     /// Coefficients of x and z of plane A. The plane's positive side contains the + lobe.

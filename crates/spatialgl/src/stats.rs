@@ -46,7 +46,7 @@ pub struct VolumeStats {
     pub bytes_packed: u64,
     /// Number of bytes sent: the packed words of occupied tiles, and a bitmap of tiles for each batch.
     pub bytes_sent: u64,
-    /// Counts of each drawn slice.
+    /// Counts of the work for each drawn slice.
     pub slices: Vec<SliceStats>,
 }
 

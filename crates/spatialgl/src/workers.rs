@@ -1,6 +1,6 @@
 //! Execution of the tasks of a volume, on one thread or on threads that a host program supplies.
 
-/// A task that is independent of all other tasks.
+/// A task that does not depend on any other task.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
 /// An executor of tasks, which may run them in any order and on any threads.

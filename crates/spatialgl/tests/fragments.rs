@@ -10,8 +10,8 @@ const ORTHOGRAPHIC: Projection = Projection::Orthographic;
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
 const HYPERBOLA: SliceClip = SliceClip::Hyperbolic(0.25);
 
-/// Checks that two numbers of fragments are equal within the specification's tolerance. It allows for other orders of
-/// the same sums in double precision.
+/// Checks that two numbers of fragments are equal within the specification's tolerance. This tolerance allows for other
+/// orders of the same sums in double precision.
 fn same(found: u64, expected: u64, what: &str) {
     assert!(found.abs_diff(expected) <= 2, "{what}: {found}, not {expected}");
 }

@@ -9,7 +9,7 @@ use crate::orientation::MatrixWords;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) depths: [u32; 4],
-    /// Colours with 8 bits per channel. Empty texels have the background colours.
+    /// Colours of the four texels, with 8 bits per channel. Empty texels have the background colours.
     pub(super) colours: [u32; 4],
 }
 

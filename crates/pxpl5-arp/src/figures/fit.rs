@@ -18,7 +18,7 @@ pub const RATE_FITTED: usize = 1;
 /// Cell sides to try, in tenths of a metre.
 const TENTHS: std::ops::RangeInclusive<u32> = 15..=40;
 
-/// Returns the updates per second of each display memory for a viewer who walks at 1 m/s. Only the policy runs, and
+/// Returns the updates per second of each display memory for a viewer's walk at 1 m/s. Only the policy runs, and
 /// nothing is drawn.
 ///
 /// # Errors

@@ -62,7 +62,7 @@ impl Situation {
         }
     }
 
-    /// Returns the updates per second of each display memory for a viewer who walks at 1 m/s.
+    /// Returns the updates per second of each display memory for a viewer's walk at 1 m/s.
     fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], ExperimentError> {
         let numbers = rules.numbers(cell_m);
         let rates = if self == Self::Gallery {

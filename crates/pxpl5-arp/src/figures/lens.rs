@@ -49,7 +49,7 @@ pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     Ok(points.map(|points| bend(&points)))
 }
 
-/// Returns the largest distance of the points from the line between the first and the last one.
+/// Returns the largest distance of the points from the straight line between the first and the last point.
 fn bend(points: &[[f64; 2]]) -> f64 {
     let [Some(first), Some(last)] = [points.first(), points.last()] else { return f64::NAN };
     let along = [last[0] - first[0], last[1] - first[1]];

@@ -187,8 +187,8 @@ fn bin_plan() -> RgbImage {
     })
 }
 
-/// Draws a row for each sector of the disc. A triangle over sectors 0, 1 and 7 (T5 of the specification) marks the
-/// sectors that it touches.
+/// Draws a diagram with a row for each sector of the disc. A triangle over sectors 0, 1 and 7 (T5 of the specification)
+/// marks the sectors that it touches.
 fn outcodes() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     let triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];

@@ -82,8 +82,8 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     ]
 }
 
-/// Returns true if the closed volume of a slice contains a point of the axis. It must not contain a point beside the
-/// axis and off the slice.
+/// Returns true if the closed volume of a slice contains a point of the axis, and does not contain a point slightly
+/// beside the axis.
 fn has_axis(view: &SliceView) -> bool {
     let SliceVolume::Wedge(planes, _) = view.volume else { return false };
     let closed = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::Closed));
