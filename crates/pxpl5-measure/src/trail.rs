@@ -59,7 +59,7 @@ pub(crate) struct Trail<'a> {
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
     /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// The first begin and the last end of RENDER for each picture and surface.
+    /// Start of RENDER on the first renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,
