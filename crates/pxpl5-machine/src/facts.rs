@@ -19,7 +19,7 @@ pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// Returns the trace entry of a time stamp that a program set at the begin or end of a stage.
+/// Returns the trace entry of a time stamp that a program set at the start or end of a stage.
 pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]

@@ -69,7 +69,8 @@ struct Contexts {
 /// A tick is idle if no other event happened since the previous tick and no other event is pending.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Number of events caused by each tick: the signal to the first GP, and the poll of the first GP's programs.
+/// Number of events caused by each tick: the signal to the first graphics processor, and the poll of the first graphics
+/// processor's programs.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 /// Returns the delay of a signal that leaves a board: one cycle of the boards' 40 MHz clock.

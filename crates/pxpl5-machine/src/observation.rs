@@ -57,7 +57,7 @@ pub struct Shown {
 /// All observations of a run. Each list is in the order in which the machine handled the events.
 #[derive(Clone, Debug, Default)]
 pub struct Observation {
-    /// Time stamps that programs set at the begin and end of each stage of a picture.
+    /// Time stamps that programs set at the start and end of each stage of a picture.
     pub marks: Vec<Mark>,
     /// Regions that have arrived at displays.
     pub arrivals: Vec<Arrival>,
@@ -101,7 +101,7 @@ pub struct StageSpan {
 impl Observation {
     /// Returns all stages in the order of picture, surface and stage.
     ///
-    /// COPY is derived from arrivals at displays. It lasts from the begin of the first region's transfer to the arrival
+    /// COPY is derived from arrivals at displays. It lasts from the start of the first region's transfer to the arrival
     /// of the last region's last pixel. `message` is the duration of one message.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {

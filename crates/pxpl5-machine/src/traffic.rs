@@ -87,7 +87,7 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message to a receiver that takes all words without a gap. The begin time is computed from the end time
+    /// Records a message to a receiver that takes all words without a gap. The start time is computed from the end time
     /// and the length.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));

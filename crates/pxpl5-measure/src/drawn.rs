@@ -27,8 +27,8 @@ pub(crate) enum Drawn {
     },
     /// A picture that the display shifts while scanning it out (raster offset).
     AdvancedMotion(Moment, DVec2),
-    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest point of all memories is
-    /// visible.
+    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest scene point in all
+    /// display memories is visible.
     Faces(FacesSeen),
 }
 

@@ -21,7 +21,7 @@ pub struct FieldMisregistration {
     pub centre_px: f64,
 }
 
-/// Prints the type's name from the first version with published report hashes. The hash of a report covers this text.
+/// Prints the name that this type had when report hashes were first published. The hash of a report covers this text.
 impl fmt::Debug for FieldMisregistration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, time_s, mean_px, centre_px } = self;

@@ -12,7 +12,7 @@ pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
     /// are lit for an instant.
     pub smear_px: Option<Percentiles>,
-    /// Results of the device that moves pictures. `None` without one.
+    /// Results of the device that moves pictures. `None` if the display has no such device.
     pub reprojection: Option<ReprojectionReport>,
 }
 

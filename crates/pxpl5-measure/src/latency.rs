@@ -33,7 +33,7 @@ pub struct LatencyPartStatistics {
     pub statistics: DefinedStatistics,
 }
 
-/// Prints the type's name from the first version with published report hashes. The hash of a report covers this text.
+/// Prints the name that this type had when report hashes were first published. The hash of a report covers this text.
 impl fmt::Debug for LatencyPartStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, in_published_latency, statistics } = self;

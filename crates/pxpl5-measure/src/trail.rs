@@ -59,7 +59,7 @@ pub(crate) struct Trail<'a> {
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
     /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// The first begin and the last end of RENDER for each picture and surface.
+    /// Start of RENDER on the first renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,
@@ -68,7 +68,7 @@ pub(crate) struct Trail<'a> {
 /// Current position while a picture is followed backwards.
 #[derive(Clone, Copy, Debug)]
 enum At {
-    /// At the begin of a region's transfer to a display.
+    /// At the start of a region's transfer to a display.
     Arrival(usize),
     /// At the end of a region's commands on a renderer.
     Drawn(usize),
@@ -140,7 +140,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Joins the begin and the end of each stage on each board.
+    /// Joins the start and the end of each stage on each board.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
@@ -316,7 +316,7 @@ impl<'a> Trail<'a> {
 
     /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
     ///
-    /// This work is the previous region on the same renderer, or the begin of RENDER.
+    /// This work is the previous region on the same renderer, or the start of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let board = Some(Board::Renderer(renderer));

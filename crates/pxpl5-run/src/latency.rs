@@ -117,7 +117,9 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// Surface whose begin starts a latency, and surface whose event ends it: two single surfaces, and the pair.
+/// Indices of the surface whose TRANSFORM starts a latency, and of the surface whose event ends it.
+///
+/// There are three latencies: of the first surface, of the second surface, and of the pair.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
 /// Function that returns the time of the event that ends a surface's latency.
@@ -171,8 +173,8 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at the sample time of this picture. If so, SEND counts pictures like the other
-/// stages.
+/// Returns true if a SEND stage begins at the sample time of this picture. If so, SEND and the other stages use the
+/// same picture numbers.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

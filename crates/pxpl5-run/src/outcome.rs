@@ -217,7 +217,7 @@ impl Outcome {
         self.record.stages()
     }
 
-    /// Returns the software time for receiving a message on a GP.
+    /// Returns the CPU time of the software that receives one message on a graphics processor.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config.gp.message_ns)

@@ -80,7 +80,7 @@ impl SoFar<'_> {
         self.end
     }
 
-    /// Returns the software time for receiving a message on a GP.
+    /// Returns the CPU time of the software that receives one message on a graphics processor.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config().gp.message_ns)

@@ -46,7 +46,7 @@ pub struct FinalResults<'a> {
     pub samples: usize,
     /// Currently known result window. `None` if the run has no window.
     ///
-    /// The begin of the result window may still move to a later period. Then all data that the observer received before
+    /// The start of the result window may still move to a later period. Then all data that the observer received before
     /// lies outside the result window.
     pub window: Option<ResultWindow>,
 }

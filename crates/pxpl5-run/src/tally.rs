@@ -75,7 +75,7 @@ pub struct Tally {
     limit: usize,
 }
 
-/// Latencies of one surface, or of a pair from the first surface's begin to the second surface's end.
+/// Latencies of one surface, or of a pair from the first surface's start to the second surface's end.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLatency<'a> {
     /// Surface whose TRANSFORM begins the latency.

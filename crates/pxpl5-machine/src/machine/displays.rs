@@ -43,7 +43,7 @@ impl Machine {
 }
 
 /// Records the tick from which a surface, or its part behind one port, shows its other buffer. Signals the swap to the
-/// first GP.
+/// first graphics processor.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,

@@ -49,9 +49,9 @@ impl Code {
 /// Source of vertex colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlatsLighting {
-    /// Colours were computed before the run (TR94: by radiosity). The GP computes no lighting.
+    /// Colours were computed before the run (TR94: by radiosity). The graphics processor computes no lighting.
     Precomputed,
-    /// The GP computes the lighting of each vertex for each eye.
+    /// The graphics processor computes the lighting of each vertex for each eye.
     OnGp,
 }
 

@@ -46,7 +46,8 @@ impl Look {
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws the marker of the series. The shapes in turn are a disc, a triangle, a cross and a ring.
+    /// Draws the marker of the series. The shape depends on the series: a disc, a triangle, a cross or a ring, and then
+    /// a disc again.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

@@ -36,7 +36,7 @@ pub struct Bar {
 pub struct TimelineRow {
     /// Name on the left of the row.
     pub name: String,
-    /// Bars, in the order of their begin.
+    /// Bars, in the order of their start.
     pub bars: Vec<Bar>,
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
@@ -60,7 +60,7 @@ pub struct Scan {
 /// A part of a run, as a timeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Timeline {
-    /// Begin of the timeline, which is a retrace.
+    /// Start of the timeline, which is a retrace.
     pub from: Time,
     /// End of the timeline, which is a retrace.
     pub to: Time,

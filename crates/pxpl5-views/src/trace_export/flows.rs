@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Position of a slice: its begin time, its track and its index in the track.
+/// Position of a slice: its start time, its track and its index in the track.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     begin: Time,
