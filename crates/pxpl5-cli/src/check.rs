@@ -9,7 +9,7 @@ use pxpl5::sweep::Sweep;
 use pxpl5::{ExperimentFile, Plan};
 use std::fmt::Write as _;
 
-/// Print the effective configuration of an experiment without a run.
+/// Print the effective configuration of an experiment without running it.
 ///
 /// The output is itself an experiment file with the same settings. For a sweep, the output describes the first point
 /// that is a valid experiment.

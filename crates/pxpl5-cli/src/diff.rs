@@ -23,7 +23,7 @@ pub(crate) struct DiffArgs {
     /// Second result.
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Leave out numbers that differ by less than this, in percent.
+    /// Leave out numbers that differ by less than this percentage.
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0)]
     least: f64,
     /// Print one JSON object.

@@ -14,7 +14,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Simulate every published figure and compare.
+/// Simulate every published figure, and compare the result with the published value.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 figures
@@ -26,13 +26,14 @@ pub(crate) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures to this file.
+    /// Write the document of all figures (ACCURACY.md) to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
     /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
-    /// Measure only these figures of the main table, separated by commas. Each row is printed when it is measured.
+    /// Measure only these figures of the main table, separated by commas. Each row is printed as soon as it is
+    /// measured.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json"])]
     only: Vec<String>,
     #[command(flatten)]

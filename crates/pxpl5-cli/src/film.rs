@@ -29,10 +29,10 @@ pub(crate) struct FilmArgs {
     /// Eye whose picture is written.
     #[arg(long, value_enum, default_value_t = Whose::Left)]
     eye: Whose,
-    /// Number of the film's first field.
+    /// Number of the first field in the film.
     #[arg(long, value_name = "FIELD", default_value_t = 12, value_parser = whole::<u64>(0, 10_000_000))]
     from: u64,
-    /// Number of fields of the film.
+    /// Number of fields in the film.
     #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = whole::<u64>(1, 10_000))]
     length: u64,
     #[command(flatten)]

@@ -12,7 +12,7 @@ use pxpl5::views::charts::{SpeedAndError, level_chart};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Compare the levels of modelling: speed, error, and the use of each level.
+/// Compare the levels of modelling: speed, error, and advice on the use of each level.
 ///
 /// Prints the last recorded measurement with its date. --measure measures again on this computer.
 #[derive(Args, Debug)]
@@ -30,10 +30,10 @@ pub(crate) struct LevelsArgs {
     /// Measure errors and speeds now, instead of printing the recorded ones.
     #[arg(long)]
     measure: bool,
-    /// Do not measure speeds.
+    /// Do not measure simulation speeds.
     #[arg(long, requires = "measure")]
     errors_only: bool,
-    /// Number of random experiments for the error against the cycle level.
+    /// Number of random experiments from which the error against the cycle level is computed.
     #[arg(long, default_value_t = 200, value_name = "N", requires = "measure", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     experiments: u64,
     /// Write the measurement to this file (JSON).
@@ -42,7 +42,7 @@ pub(crate) struct LevelsArgs {
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Write only the tables of growth with triangles and boards to this file.
+    /// Write only the tables of host time over numbers of triangles and boards to this file.
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
     #[command(flatten)]

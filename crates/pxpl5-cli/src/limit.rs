@@ -51,16 +51,17 @@ pub(crate) struct LimitArgs {
     /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
-    /// Least value of --over that is tried; default: 1 for boards, else the least that the sources allow.
+    /// Smallest value of --over that is tried; default: 1 for boards, otherwise the smallest that the sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
-    /// Greatest value of --over that is tried; default: that of the largest preset for boards, else the greatest that the sources allow.
+    /// Greatest value of --over that is tried; default: the number in the largest preset for boards, otherwise the
+    /// greatest value that the sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,
-    /// Minimum updates per second.
+    /// Goal: at least this many updates per second.
     #[arg(long, value_name = "HZ", conflicts_with = "latency")]
     rate: Option<f64>,
-    /// Maximum mean latency in fields.
+    /// Goal: at most this mean latency, in fields.
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
     /// Fields simulated for each number of triangles; default: enough for a steady state of the pipeline.

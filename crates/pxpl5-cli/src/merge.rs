@@ -7,7 +7,7 @@ use clap::Args;
 use pxpl5::sweep::{Merged, ROWS_FILE, merge};
 use std::path::PathBuf;
 
-/// Join the shards of a sweep.
+/// Join the shards (parts) of a sweep.
 ///
 /// The result is the file that the sweep would have written without shards. Missing points are an error. A point that
 /// occurs twice with equal rows is reported and kept once. A point with different rows is an error.
@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[command(after_help = "Example:
   pxpl5 merge out/slats-1 out/slats-2 --out out/slats")]
 pub(crate) struct MergeArgs {
-    /// Folders of shards.
+    /// Folders of the shards.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
     /// Folder for the joined files.

@@ -15,21 +15,22 @@ use std::fmt::Write;
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
 ///
 /// Every combination of answers is simulated, with one machine for all figures. The questions are: which latency is
-/// averaged, how fields were counted, how many finished regions a renderer keeps, what the master does with it
-/// meanwhile, which machine drew the application scenes, and whether back faces were culled.
+/// averaged, how fields were counted, how many finished regions a renderer keeps, what the master does meanwhile with a
+/// renderer that has finished its region, which machine drew the application scenes, and whether back faces were
+/// culled.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 readings
   pxpl5 readings --best 5 --rows 40
   pxpl5 readings --json > readings.json")]
 pub(crate) struct ReadingsArgs {
-    /// Number of best interpretations that are also simulated with events.
+    /// Number of interpretations, from the best on, that are also simulated with events.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
     /// Number of interpretations printed for each level.
     #[arg(long, default_value_t = 20, value_name = "N")]
     rows: usize,
-    /// Number of seeds of figure 7's fly-through; the molecules use a third of them, the head a fifth.
+    /// Number of seeds of figure 7's fly-through; the scene "molecules" uses a third of them, the scene "head" a fifth.
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = whole::<u64>(1, 100))]
     seeds: u64,
     /// Number of frames of each fly-through.

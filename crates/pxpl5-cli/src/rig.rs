@@ -14,12 +14,13 @@ use pxpl5::{ExperimentFile, Plan};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Measure the latency of a pipeline from outside with a pendulum and photodiodes, and compare with its time stamps.
+/// Measure the latency of a pipeline from outside with a pendulum and photodiodes, and compare it with the pipeline's
+/// time stamps.
 ///
-/// A tracker on a pendulum's bob feeds the host. When the host sees the low point, it starts a frame. Frames
-/// alternate between dark and light under a photodiode in the middle of a line of the screen. The pipeline draws
-/// nothing else, so it is never full. Displays that follow the head's rotation and frameless rendering are refused,
-/// because their light does not identify a frame. A disagreement between outside and inside measurements is an error.
+/// A tracker on a pendulum's bob feeds the host. When the host sees the low point, it starts a frame. Frames alternate
+/// between dark and light under a photodiode in the middle of a line of the screen. The pipeline draws nothing else, so
+/// it is never full. Displays that follow the head's rotation and frameless rendering are refused, because their light
+/// does not identify a frame. A disagreement between outside and inside measurements is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 rig --pipeline rendering-control
@@ -31,10 +32,10 @@ do not apply.")]
 pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Number of low points to measure, 2 to 10,000.
+    /// Number of the pendulum's low points to measure, 2 to 10,000.
     #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = whole::<u64>(2, 10_000))]
     passes: u64,
-    /// Line of a field under the photodiode on the screen, 0 at the top; default 120, the middle of NTSC's 240.
+    /// Position of the photodiode: line of a field on the screen, 0 at the top; default 120, the middle of NTSC's 240.
     #[arg(long, value_name = "N")]
     line: Option<u32>,
     #[command(flatten)]

@@ -51,10 +51,11 @@ pub(crate) struct RunArgs {
     snapshot: SnapshotArgs,
     #[command(flatten)]
     budget: BudgetArgs,
-    /// Also tell what 10 % more of each resource would bring: by the pipeline's closed form where it holds, else by six more runs.
+    /// Also print the effect of 10 % more of each resource: by the pipeline's closed-form formula if it applies,
+    /// otherwise by six more runs.
     #[arg(long)]
     what_if: bool,
-    /// Also print the definitions of latency and of pictures due.
+    /// Also print the definitions of latency and of a picture that is due.
     #[arg(long)]
     explain: bool,
     /// Print the report as one JSON object.

@@ -24,7 +24,7 @@ pub(crate) struct SettingArgs {
     /// Decimate the scene to at most N primitives, keeping its shape.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     triangles: Option<i64>,
-    /// Keep the coordinates of a model file, in metres, instead of fitting the model into the view of both eyes.
+    /// Keep the coordinates of a model file, in metres; by default the model is fitted into the view of both eyes.
     #[arg(long)]
     no_fit: bool,
     /// Drop triangles that face away from the eye. A surface without holes looks the same.
@@ -59,19 +59,19 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Instant of a picture's display for which its view is predicted: middle, first-pixel, last-pixel or retrace;
-    /// default middle.
+    /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or
+    /// retrace; default middle.
     #[arg(long)]
     aim: Option<String>,
     /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (plain and vdrt set
     /// --raster.)
     #[arg(long)]
     display: Option<String>,
-    /// Raster before a tracked head's eyes: plain or vdrt (shifted by the error of the predicted pose). With shift,
+    /// Raster of a tracked head's display: plain or vdrt (shifted by the error of the predicted pose). With shift,
     /// rotation or depth a device moves pictures to the newest pose. Default plain.
     #[arg(long)]
     raster: Option<String>,
-    /// Periods of the display to simulate: NTSC fields of 1/60 s; default 120.
+    /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     fields: Option<i64>,
     /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
@@ -80,7 +80,7 @@ pub(crate) struct SettingArgs {
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the head motion's sway, or with --head of the tracker's noise; default 1.
+    /// Seed of the sway in the head motion, or with --head of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5

@@ -20,13 +20,14 @@ use std::path::{Path, PathBuf};
 /// Options to save a snapshot of a run, or to resume a run from a snapshot.
 #[derive(Args, Debug, Default)]
 pub(crate) struct SnapshotArgs {
-    /// Save a snapshot at the first retrace of this field (see --save), and continue.
+    /// Save a snapshot at the first retrace of this field into the file of --save, and continue.
     #[arg(long, value_name = "FIELD", requires = "save", value_parser = whole::<u64>(0, 10_000_000))]
     save_at: Option<u64>,
-    /// File of the snapshot.
+    /// File into which the snapshot is saved.
     #[arg(long, value_name = "FILE", requires = "save_at")]
     save: Option<PathBuf>,
-    /// Resume from a snapshot: the run is repeated up to its field, without pixels, compared, and continued.
+    /// Resume from a snapshot: the run is repeated without pixels up to the saved field, compared with the snapshot,
+    /// and continued.
     #[arg(long, value_name = "FILE")]
     restore: Option<PathBuf>,
 }

@@ -29,17 +29,17 @@ pub(crate) struct SweepArgs {
     /// Folder for rows.jsonl, times.jsonl and results.csv.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Keep the finished points and run the others.
+    /// Keep the finished points and run only the others.
     #[arg(long)]
     resume: bool,
     /// Run share I of N disjoint shares.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Run nothing, but write scripts that submit the sweep to Slurm into DIR: an array of tasks, with time and
-    /// memory by estimate, and a job that joins their rows in --out.
+    /// Run nothing, but write scripts into DIR that submit the sweep to Slurm: an array of tasks with estimated time
+    /// and memory, and a job that joins their rows in --out.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
     slurm: Option<PathBuf>,
-    /// Number of tasks of that array; default: by estimate, about a quarter of an hour each.
+    /// Number of tasks in the Slurm array; default: estimated for about a quarter of an hour per task.
     #[arg(long, value_name = "N", requires = "slurm", value_parser = whole::<u64>(1, 1_000_000))]
     tasks: Option<u64>,
     /// Number of points simulated in parallel; default: one for each core, and one in a task of Slurm.

@@ -6,7 +6,7 @@ use image::RgbImage;
 use serde_json::Value;
 use support::{Folder, err, json, names, out};
 
-/// Faces of 128 texels, a picture of 160 x 120, and two seconds.
+/// Options of a small walk: faces of 128 texels, a picture of 160 x 120 pixels, and two seconds.
 const SMALL: [&str; 10] = [
     "--set",
     "arp.face_texels=128",
@@ -174,7 +174,7 @@ fn a_lens_that_is_too_wide_for_a_plane_has_pictures_too() {
     assert!(names.contains(&"eye.png".to_owned()) && !names.contains(&"eye-flat.png".to_owned()), "{names:?}");
 }
 
-/// The flat lens is the default, so the views through the lens and without a lens are equal.
+/// Tests the default lens, which is flat. The views through the lens and without a lens must be equal.
 #[test]
 fn the_eye_sees_through_no_lens_unless_one_is_given() {
     let folder = Folder::new("arp-flat");
@@ -182,7 +182,7 @@ fn the_eye_sees_through_no_lens_unless_one_is_given() {
     assert!(picture(&folder, "o/eye.png") == picture(&folder, "o/eye-flat.png"));
 }
 
-/// The example pixel of the guide: upper left, head 30 degrees to the left, faces of 512 texels.
+/// Tests the example pixel of the guide: upper left, head 30 degrees to the left, faces of 512 texels.
 #[test]
 fn texel_prints_the_face_and_the_texels_of_a_pixel() {
     let folder = Folder::new("arp-texel");

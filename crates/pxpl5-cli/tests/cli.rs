@@ -13,7 +13,7 @@ fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, more].concat()
 }
 
-/// Asserts the exit code of a command, and that standard error contains all given texts.
+/// Asserts that a command is refused with this exit code, and that standard error contains all given texts.
 fn refused(args: &[&str], code: i32, says: &[&str]) {
     let folder = Folder::new(&format!(
         "refused-{:x}",
@@ -28,7 +28,7 @@ fn refused(args: &[&str], code: i32, says: &[&str]) {
     assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
 }
 
-/// A load that the machine cannot draw for many seconds. Its slaves have room for the bins of both eyes.
+/// Command line of a run whose machine needs many seconds for a frame. Its slaves have room for the bins of both eyes.
 const FULL: [&str; 9] = [
     "run",
     "--pipeline",
@@ -41,7 +41,7 @@ const FULL: [&str; 9] = [
     "gp.bin_bytes=400000",
 ];
 
-/// Asserts that a run is too short for results: the command fails, states the necessary length, and prints the
+/// Asserts that a run is too short for results. The command must fail, state the necessary length, and print the
 /// results that exist.
 fn too_short(args: &[&str], says: &str) {
     let output = Folder::new(&format!("short-{}", args.len())).run(args);
@@ -112,7 +112,7 @@ fn a_run_that_is_too_short_prints_what_it_has() {
     }
 }
 
-/// Returns the JSON object on standard output, for any exit code.
+/// Returns the JSON object that a command printed to standard output, for any exit code.
 fn json_of(output: &std::process::Output) -> serde_json::Value {
     serde_json::from_str(&out(output)).expect("one object")
 }
@@ -272,7 +272,8 @@ fn a_million_triangles_do_not_fit_and_the_message_says_what_to_do() {
     refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
 }
 
-/// Returns a PLY file of one triangle with the given coordinates of its first vertex and the given last index.
+/// Returns the text of a PLY file with one triangle. `first` has the coordinates of its first vertex, `last_index` the
+/// last index.
 fn ply(first: &str, last_index: &str, faces: usize) -> String {
     let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     let face = if faces == 0 { String::new() } else { format!("3 0 1 {last_index}\n") };
@@ -527,7 +528,7 @@ fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one()
     assert_eq!(figures, expected.collect());
 }
 
-/// Returns the published and the simulated value of a figure in ACCURACY.md.
+/// Returns the published and the simulated value of a figure, as ACCURACY.md prints them.
 fn accuracy(id: &str) -> (f64, f64) {
     let document = include_str!("../../../ACCURACY.md");
     let row = document.lines().find(|line| line.starts_with(&format!("| {id} |"))).expect("a row");
@@ -546,7 +547,7 @@ fn assert_agrees_with_accuracy(published: &serde_json::Value) {
     assert!((simulated / found - 1.0).abs() < 0.001, "{published}: in ACCURACY.md {found}");
 }
 
-/// Comment with which an experiment file explains a difference from ACCURACY.md.
+/// Beginning of the comment in an experiment file that explains a difference from ACCURACY.md.
 const DIFFERS: &str = "# Not the number of ACCURACY.md: ";
 
 #[test]
@@ -586,14 +587,14 @@ fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
     }
 }
 
-/// Returns the cell after a row's name in the table on the terminal.
+/// Returns the first cell behind the name of a row, in the table that the command prints to the terminal.
 fn cell(text: &str, name: &str) -> String {
     let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name}: {text}"));
     line[name.len()..].trim().to_owned()
 }
 
-/// For light and heavy runs of all kinds, the table on the terminal rounds the values of the JSON report, and shows
-/// `-` for null.
+/// Tests light and heavy runs of all kinds. The table on the terminal must show the rounded values of the JSON report,
+/// and `-` for null.
 #[test]
 fn the_terminal_says_what_json_says() {
     let folder = Folder::new("terminal");
@@ -630,7 +631,7 @@ fn the_terminal_says_what_json_says() {
     }
 }
 
-/// A still ball in front of a still head needs only one update on a display that turns cube faces.
+/// Tests a scene that needs only one update: a still ball in front of a still head, on a display that turns cube faces.
 #[test]
 fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
     let folder = Folder::new("drawn-once");

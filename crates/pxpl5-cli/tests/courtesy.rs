@@ -1,5 +1,5 @@
-//! Tests of unrequested help: warnings about doubtful numbers, the command to resume after Ctrl-C, and the pipelines
-//! that a machine can run.
+//! Tests of help that the user did not ask for: warnings about doubtful numbers, the command to resume after Ctrl-C,
+//! and the pipelines that a machine can run.
 
 mod support;
 
@@ -32,7 +32,7 @@ fn a_value_outside_its_range_is_warned_of_once_with_range_and_source() {
     assert_eq!(err(&checked).matches("warning").count(), 1);
 }
 
-/// Output must not attribute times to executed code if no code ran.
+/// Tests that the output attributes times to executed code only if code ran.
 #[test]
 fn times_of_the_table_at_the_cycle_level_are_warned_of() {
     let folder = Folder::new("times-of-the-table");
@@ -157,7 +157,7 @@ fn fewer_triangles_keep_the_whole_model() {
     assert!(height > 200, "{height} lines");
 }
 
-/// Runs that would take hours or gigabytes are refused within seconds, with their estimated cost.
+/// Tests that runs of hours or gigabytes are refused within seconds, with their estimated cost.
 #[test]
 fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     let folder = Folder::new("budget");
@@ -185,7 +185,7 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     }
 }
 
-/// Costs that depend on the size of a run and not on its length are known before the start.
+/// Tests costs that depend on the size of a run and not on its length. They must be known before the start.
 #[test]
 fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     let folder = Folder::new("estimate");
@@ -204,7 +204,7 @@ fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     }
 }
 
-/// Commands that execute many runs, or a long one, add up the cost before the first run.
+/// Tests commands that execute many runs, or a long run. They must add up the cost before the first run.
 #[test]
 fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     let folder = Folder::new("many-runs");
@@ -223,7 +223,8 @@ fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     }
 }
 
-/// Volumes, walks, sweeps and debugger sessions have the same budgets and are refused before they allocate memory.
+/// Tests that volumes, walks, sweeps and debugger sessions have the same budgets as runs. They must be refused before
+/// they allocate memory.
 #[test]
 fn every_command_that_computes_is_estimated_before_it_starts() {
     let folder = Folder::new("all-budgets");
@@ -263,7 +264,7 @@ fn every_command_that_computes_is_estimated_before_it_starts() {
     assert!(err(&output).contains("expected to take 3"), "{}", err(&output));
 }
 
-/// A scene of which no picture will be shown causes a warning before the run.
+/// Tests the warning before a run of a scene of which no picture will be shown.
 #[test]
 fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
     let folder = Folder::new("too-heavy");
@@ -287,8 +288,8 @@ fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
     }
 }
 
-/// An error about a number that is too large states the maximum. An error about a byte that is not text states its
-/// position.
+/// Tests two error messages. A number that is too large must give the maximum, and a byte that is not text must give
+/// its position.
 #[test]
 fn what_is_wrong_with_an_input_is_told_with_its_limits_and_its_place() {
     let folder = Folder::new("told");
@@ -337,7 +338,7 @@ fn what_is_wrong_with_an_input_is_told_with_its_limits_and_its_place() {
     }
 }
 
-/// A scene with fewer triangles than requested is drawn whole.
+/// Tests that a scene with fewer triangles than requested is drawn completely.
 #[test]
 fn more_triangles_than_a_scene_has_are_all_of_them() {
     let folder = Folder::new("all-triangles");
@@ -350,7 +351,7 @@ fn more_triangles_than_a_scene_has_are_all_of_them() {
     );
 }
 
-/// A count of one has the singular form, and constant values have no deviation, in JSON and in CSV.
+/// Tests that a count of one has the singular form, and that constant values have no deviation, in JSON and in CSV.
 #[test]
 fn one_is_told_as_one_and_a_constant_without_deviation() {
     let folder = Folder::new("plurals");
@@ -373,7 +374,7 @@ fn one_is_told_as_one_and_a_constant_without_deviation() {
     assert!(out(&output).contains("1 point is in p/rows.jsonl"), "{}", out(&output));
 }
 
-/// XML documents contain no control characters, wherever a user's text appears.
+/// Tests that XML documents contain no control characters, wherever text of the user appears.
 #[cfg(unix)]
 #[test]
 fn labels_with_control_characters_give_valid_drawings() {
@@ -397,7 +398,7 @@ fn labels_with_control_characters_give_valid_drawings() {
     }
 }
 
-/// Settings that a screen cannot have are refused. Unusual but possible settings run.
+/// Tests that settings of an impossible screen are refused, and that unusual but possible settings run.
 #[test]
 fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
     let folder = Folder::new("odd");
@@ -433,7 +434,8 @@ fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
     assert!(output.status.code() == Some(2) && err(&output).contains("at least 10"), "{}", err(&output));
 }
 
-/// A picture that is requested long after its field was scanned has no latency, rather than one of a billion fields.
+/// Tests that a picture has no latency if it is requested long after its field was scanned. A latency of a billion
+/// fields would be wrong.
 #[test]
 fn no_latency_is_longer_than_the_run() {
     let folder = Folder::new("latency");

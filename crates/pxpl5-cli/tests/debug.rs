@@ -23,7 +23,7 @@ fn words(line: &str) -> Vec<String> {
     words.collect()
 }
 
-/// Runs the sessions of the guide again: blocks whose first line is a command after `$`.
+/// Runs the debugger sessions of the guide again. A session is a block of text whose first line is a command after `$`.
 fn made_anew(text: &str) -> (String, usize) {
     let mut made = String::new();
     let mut sessions = 0;
@@ -76,7 +76,7 @@ fn a_script_runs_to_times_fields_boards_and_conditions() {
     assert_eq!(text.lines().filter(|line| line.starts_with("> ")).count(), 7, "{text}");
 }
 
-/// A snapshot contains the hash of the events before its field, as in a run without a snapshot.
+/// Tests that a snapshot contains the hash of all events before its field, as in a run without a snapshot.
 #[test]
 fn the_trace_is_that_of_the_run_however_often_somebody_looked() {
     let folder = Folder::new("debug-trace");

@@ -1,11 +1,11 @@
-//! Tests with files of other programs as inputs of the command.
+//! Tests of the command with input files from other programs.
 
 mod support;
 
 use serde_json::Value;
 use support::{Folder, err, out};
 
-/// A pyramid with a material, continued lines, and a comment in Latin-1.
+/// Text of a model file: a pyramid with a material, continued lines, and a comment in Latin-1.
 const MODEL: &[u8] =
     b"# Gr\xf6\xdfe\nusemtl M\xe9tall\nv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -53,8 +53,8 @@ fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
 }
 
-/// Returns a recording of a hundred poses a second for three seconds, with none between 0.28 s and 2.49 s and one
-/// duplicate.
+/// Returns the text of a recording with a hundred poses per second for three seconds. It has no pose between 0.28 s and
+/// 2.49 s, and one duplicate.
 fn recording() -> String {
     let times = (0..300).map(|n| 10 * n).filter(|ms| !(281..2490).contains(ms));
     let rows = times.map(|ms| format!("{}.{:03} 0 0 0 0 0 0 1\n", 1000 + ms / 1000, ms % 1000));

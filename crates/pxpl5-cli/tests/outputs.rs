@@ -1,4 +1,4 @@
-//! Tests of output files. Regular files are replaced as a whole. Devices, pipes and links are written through.
+//! Tests of output files. Regular files are replaced as a whole. Data for devices and pipes are written into them.
 #![cfg(unix)]
 
 mod support;
@@ -17,7 +17,7 @@ const FILM: [&str; 11] =
     ["film", "--pipeline", "slats", "--scene", "full-screen:4", "--from", "4", "--length", "2", "--quiet", "--out"];
 const ASSEMBLE: [&str; 4] = ["i860", "asm", "p.s", "-o"];
 
-/// Every command that writes one file, without the file's name.
+/// Commands that write one file each, without the name of the file.
 const COMMANDS: [&[&str]; 4] = [&TRACE, &SAVE, &FILM, &ASSEMBLE];
 
 fn folder(name: &str) -> Folder {
@@ -156,8 +156,8 @@ fn where_one_file_cannot_be_written_none_is() {
     assert_eq!(read(&folder, "r/report.json"), b"old");
 }
 
-/// A device that accepts no data is written last, after all files have their new names. On failure the files get
-/// their old contents back.
+/// Tests a device that accepts no data. It must be written last, after all files have their new names. After the
+/// failure the files must have their old contents again.
 #[test]
 fn what_was_given_its_name_gets_its_old_contents_back() {
     let folder = folder("back");
@@ -195,7 +195,7 @@ fn of_runs_that_write_into_one_folder_at_once_one_is_there_whole() {
     assert!(json(&folder.run(&["run", "r/experiment.toml", "--json"]))["config_hash"].is_string());
 }
 
-/// A written experiment finds a model beside the original command, whatever the current folder.
+/// Tests that an experiment file written by a command still finds the model file, whatever the current folder is.
 #[test]
 fn what_was_written_runs_again_from_anywhere() {
     let folder = folder("again");
@@ -208,7 +208,7 @@ fn what_was_written_runs_again_from_anywhere() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
-/// A long computation does not start if its output file cannot be written.
+/// Tests that a long computation does not start if its output file cannot be written.
 #[test]
 fn a_path_that_cannot_be_written_is_told_before_the_work() {
     let folder = folder("early");
@@ -219,7 +219,7 @@ fn a_path_that_cannot_be_written_is_told_before_the_work() {
     }
 }
 
-/// Of two runs into the same folder, only the files of the second remain.
+/// Tests two runs into the same folder. Only the files of the second run must remain.
 #[test]
 fn a_run_takes_the_place_of_the_run_before_as_a_whole() {
     let folder = folder("replaced");
@@ -269,7 +269,7 @@ fn rows_of_a_sweep_are_not_replaced_and_a_sweep_replaces_no_run() {
     assert!(err(&output).contains("files of `pxpl5 run`"), "{}", err(&output));
 }
 
-/// The manifest of another program is not replaced.
+/// Tests that the manifest of another program is not replaced.
 #[test]
 fn a_manifest_of_another_program_is_left_alone() {
     let folder = folder("foreign");
@@ -281,7 +281,7 @@ fn a_manifest_of_another_program_is_left_alone() {
     assert_eq!(read(&folder, "r/manifest.json"), b"{\"name\": \"page\"}");
 }
 
-/// Temporary files of a process that has ended are removed, and those of a running process are kept.
+/// Tests that temporary files of a process that has ended are removed, and those of a running process are kept.
 #[test]
 fn the_next_run_removes_what_dead_processes_have_left() {
     let folder = folder("left-over");
@@ -322,7 +322,7 @@ fn a_run_that_is_interrupted_leaves_no_folder() {
     }
 }
 
-/// An error names the user's file and an option that the command has.
+/// Tests that an error message names the user's file, and an option that the command has.
 #[test]
 fn an_error_names_the_file_and_the_option_that_were_given() {
     let folder = folder("named");

@@ -25,9 +25,9 @@ fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
     folder.file("rows.jsonl", text);
 }
 
-/// The values are 1, 2, 3 plus ten times the x value: mean 2, standard deviation 1. For two degrees of freedom the
-/// 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore 4.302653 / sqrt(3) =
-/// 2.484138.
+/// Tests mean and interval. The values are 1, 2, 3 plus ten times the x value: mean 2, standard deviation 1. For two
+/// degrees of freedom the 97.5th percentile of Student's t is 4.302653 (any table). Half of the interval is therefore
+/// 4.302653 / sqrt(3) = 2.484138.
 #[test]
 fn means_deviations_and_intervals_are_those_of_the_seeds() {
     let folder = Folder::new("plot-means");
@@ -82,7 +82,7 @@ fn what_was_not_judged_is_no_zero() {
     assert!(err(&run).contains("none of 18 rows has a number") && !folder.names().contains(&"none.svg".to_owned()));
 }
 
-/// 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
+/// Tests the size of figures. 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
 #[cfg(feature = "print")]
 #[test]
 fn figures_have_their_width_in_every_format() {
@@ -143,7 +143,7 @@ fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
     assert!(std::fs::read_to_string(folder.0.join("b.csv")).expect("written").contains("\n1,1,0,6,"));
 }
 
-/// Rows of a comparison are means over seeds, with an interval for each.
+/// Tests a plot of a comparison. Each of its rows is a mean over seeds with an interval.
 #[test]
 fn a_comparison_is_a_point_for_each_pipeline() {
     let folder = Folder::new("plot-comparison");

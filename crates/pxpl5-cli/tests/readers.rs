@@ -1,8 +1,8 @@
-//! Tests of all readers of user input with damaged files: a corpus in tests/corpus, and mutations of it.
+//! Tests of all readers of user input with damaged files: a corpus in tests/corpus, and mutations of its files.
 //!
-//! Damaged input must not cause a panic or an endless loop. Accepted input is valid, can be written, and reads back
-//! as the same value. Every mutation follows from a number, so that a failure names it. `PXPL5_FUZZ=100` runs a
-//! hundred times as many mutations, and `PXPL5_FUZZ_FROM` starts at another number.
+//! Damaged input must not cause a panic or an endless loop. Accepted input must be valid, and must be the same value
+//! after it was written and read again. A mutation follows from a number, which a failure states. `PXPL5_FUZZ=100` runs
+//! a hundred times as many mutations, and `PXPL5_FUZZ_FROM` starts at another number.
 
 use i860::vectors;
 use pxpl5::scene::{Format, Scene, from_bytes};
@@ -12,7 +12,7 @@ use pxpl5::{Experiment, ExperimentError, ExperimentFile, MachineConfig, PeriodNu
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the files of a folder below tests/corpus, or elsewhere in the repository, with the given extension.
+/// Returns the files with the given extension in a folder below tests/corpus, or elsewhere in the repository.
 fn corpus(folder: &str, extension: Option<&str>) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -119,7 +119,7 @@ fn try_all(files: &[(String, Vec<u8>)], rounds: u64, mut read: impl FnMut(&str, 
     assert!(files.iter().any(|(extension, file)| read(extension, file)), "the corpus itself is read");
 }
 
-/// Prints the round and the input of a panic when dropped.
+/// A guard that prints the round and its input if a panic drops it.
 struct Told<'a>(u64, &'a [u8]);
 
 impl Drop for Told<'_> {
@@ -235,7 +235,8 @@ fn conformance_vectors() {
     });
 }
 
-/// Accepted settings run: small machines with parameters from all over their limits end and report their results.
+/// Tests that accepted settings run. Small machines with parameters from anywhere within their limits must end their
+/// run and report results.
 #[test]
 fn machines_of_any_numbers_run_or_are_refused() {
     let parameters = MachineConfig::small_hmd().parameters();

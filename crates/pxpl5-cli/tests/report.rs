@@ -145,7 +145,7 @@ fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
     assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
 }
 
-/// Files that are unlisted or changed belong to another run.
+/// Tests that files which the manifest does not list, or which have changed, do not appear on a report page.
 #[test]
 fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     let folder = Folder::new("report-manifest");
@@ -172,7 +172,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     assert!(err(&output).contains("report.json") && err(&output).contains("other contents"), "{}", err(&output));
 }
 
-/// A run of three pictures has a trace, a film and files, although no latency is known after the warm-up.
+/// Tests a run of three pictures. It has a trace, a film and files, although no latency is known after the warm-up.
 #[test]
 fn runs_of_few_pictures_write_all_that_was_computed() {
     let folder = Folder::new("few-pictures");
@@ -210,7 +210,7 @@ fn runs_of_few_pictures_write_all_that_was_computed() {
     assert!(output.status.success() && out(&output).contains("the run is over"), "{}", err(&output));
 }
 
-/// A pipeline without a closed form estimates the necessary length from its own pictures.
+/// Tests a pipeline without a closed-form formula. It estimates the necessary length of a run from its own pictures.
 #[test]
 fn fields_that_a_run_needs_are_told_of_every_pipeline() {
     let folder = Folder::new("fields-needed");

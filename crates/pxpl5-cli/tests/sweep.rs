@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use support::{Folder, command, err, names, out};
 
-/// A sweep of 64 points that take some milliseconds each.
+/// Text of a sweep with 64 points that take some milliseconds each.
 const FILE: &str = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 20\n\
     [sweep]\nseeds = 2\n[sweep.grid]\ncopy = [\"whole\", \"split\"]\ntriangles = { from = 1, to = 151, step = 10 }\n";
 const POINTS: usize = 2 * 2 * 16;
@@ -32,7 +32,7 @@ fn read(folder: &Folder, name: &str) -> String {
     fs::read_to_string(folder.0.join(name)).expect(name)
 }
 
-/// Returns the complete lines of a JSON lines file after its header. An incomplete last line is left out.
+/// Returns the complete lines of a JSON lines file, without its header. An incomplete last line is left out.
 fn lines(path: &Path) -> Vec<String> {
     let text = fs::read_to_string(path).unwrap_or_default();
     let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).skip(1);
@@ -205,7 +205,7 @@ fn wrong_use_is_refused() {
     assert!(err(&output).contains("file"), "{}", err(&output));
 }
 
-/// Runs the script of docs/sweeps.md that the repository contains.
+/// Runs the script from docs/sweeps.md that the repository contains.
 fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
     let mut command = Command::new("sh");
@@ -240,7 +240,8 @@ fn the_published_sweep_has_some_hundred_points() {
     (0..sweep.space().points()).for_each(|point| drop(sweep.plan(point).expect("an experiment")));
 }
 
-/// A relative path of a scene refers to the folder of the sweep's file, in any current folder and in axes too.
+/// Tests that a relative path of a scene refers to the folder of the sweep's file, for any current folder and also in
+/// axes.
 #[test]
 fn scenes_of_a_sweep_lie_beside_its_file_and_what_fails_altogether_fails() {
     let folder = Folder::new("beside");
@@ -271,7 +272,7 @@ fn an_edited_model_is_not_mixed_with_what_was_made_of_it_before() {
     assert!(err(&output).contains("results of another sweep"), "{}", err(&output));
 }
 
-/// A substitute for `sbatch` that runs the submitted tasks one by one and records its options.
+/// A substitute for `sbatch`. The script records its options, and runs the submitted tasks one by one.
 const SBATCH: &str = "#!/bin/bash
 script=${@: -1}
 echo \"$@\" >> calls

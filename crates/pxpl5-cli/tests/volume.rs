@@ -6,7 +6,7 @@ use image::RgbImage;
 use serde_json::Value;
 use support::{Folder, err, json, names, out};
 
-/// A display of 36 slices with 128 x 96 pixels.
+/// Options of a small display: 36 slices with 128 x 96 pixels.
 const SMALL: [&str; 6] = ["--set", "display.slices=36", "--set", "display.width=128", "--set", "display.height=96"];
 
 fn volume<'a>(command: &'a str, arguments: &[&'a str]) -> Vec<&'a str> {
@@ -79,7 +79,7 @@ fn a_slice_a_sheet_a_view_and_a_film_are_pictures_with_their_origin() {
     }
 }
 
-/// A cutaway omits light, and another eye position changes the picture.
+/// Tests that a cutaway removes light, and that another eye position changes the picture.
 #[test]
 fn a_cutaway_is_darker_and_a_turn_has_other_pictures() {
     let folder = Folder::new("volume-cut");
@@ -159,8 +159,8 @@ fn what_is_wrong_with_an_option_is_said_before_anything_is_drawn_and_the_exit_co
     }
 }
 
-/// A sweep of three clips and two tile sizes, interrupted after two points, gives the same file as an uninterrupted
-/// sweep.
+/// Tests a sweep of three clips (ways to cut a scene) and two tile sizes. After an interruption at two points, the
+/// final file must be the same as without an interruption.
 #[test]
 fn a_sweep_is_the_same_file_after_an_interruption() {
     let folder = Folder::new("volume-sweep");

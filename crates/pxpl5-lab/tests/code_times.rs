@@ -12,7 +12,8 @@ fn table(times: CodeTimes) -> Vec<u64> {
     all.map(|ns| ns.round() as u64).collect()
 }
 
-/// The constants change with the code and the i860 model. The failure message states the new values.
+/// Tests the constants of the timing table, which change with the code and the i860 model. The failure message states
+/// the new values.
 #[test]
 fn the_table_of_the_code_is_what_the_code_takes() {
     let papers = GpTiming::PAPERS;

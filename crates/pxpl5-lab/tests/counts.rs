@@ -5,8 +5,8 @@ use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_measure::{ErrorCauses, Measured, Report, Showing};
 use pxpl5_run::{DuePictures, ExperimentError, Outcome, WARM_UP_PERIODS};
 
-/// Runs a pipeline with a number of triangles that cover the screen. Strips have eight lines, which needs an eighth
-/// of the events.
+/// Runs a pipeline with a number of triangles that cover the screen. Strips (groups of scan lines) have eight lines, so
+/// that the run has an eighth of the events.
 fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, ExperimentError> {
     let strips = if pipeline.starts_with("jitp") { "strip_rows = 8\n" } else { "" };
     let text = format!(
@@ -16,7 +16,7 @@ fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, Experimen
     plan.experiment(plan.load_scene().expect("built in")).run()
 }
 
-/// Returns the counts of due pictures of a run, even if the run is too short.
+/// Returns the numbers of due, shown and missed pictures of a run, even if the run is too short.
 fn due(pipeline: &str, triangles: u32, fields: u64) -> Option<DuePictures> {
     match run(pipeline, triangles, fields) {
         Ok(outcome) => outcome.due(),
@@ -32,10 +32,11 @@ fn pipelines() -> Vec<&'static str> {
 /// Numbers of triangles from a light load to far more than any pipeline of the papers draws in time.
 const LOADS: [u32; 9] = [1, 4, 16, 64, 110, 150, 400, 1_000, 3_000];
 
-/// Allowed difference of the shares of late pictures between two loads. Slats sends clumps of 30 triangles, and a
-/// nearly empty clump costs as many messages as a full one. A few triangles more may therefore be late in one field
-/// less. None of the loads is close to such a limit. The tolerance is one picture for each run, because the windows
-/// of two runs may begin in different periods.
+/// Returns the allowed difference between the shares of late pictures at two loads.
+///
+/// Slats sends clumps (groups) of 30 triangles, and a nearly empty clump costs as many messages as a full one. A few
+/// triangles more can therefore be late in one field less. None of the loads is close to such a limit. The tolerance is
+/// one picture for each run, because the evaluated parts of two runs may begin in different periods.
 fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
     1.0 / a.due as f64 + 1.0 / b.due as f64
 }
@@ -129,8 +130,8 @@ fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
     assert!(heavy.advice.contains("pxpl5 limit --pipeline jitp-field"), "{heavy}");
 }
 
-/// Three processors cannot draw 500 triangles in a field. The picture of the start stays on the screen and is not
-/// evaluated, for any length of the run.
+/// Tests a load that is never drawn in time: three processors cannot draw 500 triangles in a field. For any length of
+/// the run, the first picture stays on the screen and is not evaluated.
 #[test]
 fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
     for fields in [30, 120] {
@@ -150,7 +151,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
     }
 }
 
-/// The only complete fields are those of the start.
+/// Tests a run whose only complete fields are those at its start.
 #[test]
 fn a_run_all_of_whose_due_pictures_failed_has_no_latency() {
     let text =

@@ -31,7 +31,8 @@ fn every_row_is_written_out_with_its_experiment() {
     }
 }
 
-/// JITP prints 3.3 degrees and 33 px, 0.013 degrees and 0.13 px. Half of the last digit is allowed.
+/// Tests the errors that JITP prints: 3.3 degrees and 33 px, 0.013 degrees and 0.13 px. Half of the last digit is
+/// allowed.
 #[test]
 fn just_in_time_pixels_have_the_errors_of_the_paper() {
     within("J1", [3.25, 3.35]);
@@ -42,15 +43,16 @@ fn just_in_time_pixels_have_the_errors_of_the_paper() {
     within("J4", [98.0, 100.0]);
 }
 
-/// 240 visible lines need 240 transforms of every triangle's corners, compared with one transform a field.
+/// Tests the number of transforms. 240 visible lines need 240 transforms of every triangle's corners, compared with one
+/// transform per field.
 #[test]
 fn line_by_line_takes_240_times_the_transforms() {
     within("J5", [239.99, 240.01]);
 }
 
-/// The rate is 40 MHz divided by the 258 and 292 clocks of the array's programs. Clearing and shading of regions add
-/// up to one percent. Commands other than triangles, four for each of 20 regions among 26,000, add a third of a
-/// percent.
+/// Tests the renderer's rate: 40 MHz divided by the 258 or 292 clocks of the array's programs. Clearing and shading of
+/// regions add up to one percent. Commands other than triangles add a third of a percent: four for each of 20 regions
+/// among 26,000 commands.
 #[test]
 fn a_renderer_draws_as_many_triangles_as_its_programs_clocks_allow() {
     for (id, clocks) in [("R4", 258.0), ("R4b", 292.0)] {
@@ -59,13 +61,14 @@ fn a_renderer_draws_as_many_triangles_as_its_programs_clocks_allow() {
     }
 }
 
-/// The peak is two operations per clock at 40 MHz. The loop's own instructions keep the measured rate below the peak.
+/// Tests the i860's rate. The peak is two operations per clock at 40 MHz. The loop's own instructions keep the measured
+/// rate below the peak.
 #[test]
 fn the_i860_comes_near_its_peak_and_not_beyond() {
     within("R7", [78.0, 79.99]);
 }
 
-/// More triangles at a time never pass through a machine whose senders have one channel.
+/// Tests that the depth of the FIFO and the number of channels of a sender change the triangle rates.
 #[test]
 fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
     for id in ["R1", "R2", "R3"] {
@@ -74,15 +77,16 @@ fn the_fifo_and_the_senders_channels_move_the_rate_of_the_machine() {
     }
 }
 
-/// The beam takes 239 lines of 63.56 us from the first line of a field to the last. Nothing else changes the rig's
-/// total here.
+/// Tests the interval of the rig's total latency. The beam takes 239 lines of 63.56 us from the first line of a field
+/// to the last. In this test nothing else changes the latency.
 #[test]
 fn the_rigs_total_moves_with_the_photodiode() {
     let [low, high] = row("R6").interval.expect("varied");
     assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
 }
 
-/// A report waits at most for one poll of the kernel: 30 ms are 1.798 fields. The mean wait is half of that.
+/// Tests the wait for the kernel. A report waits at most for one poll: 30 ms are 1.798 fields. The mean wait is half of
+/// this time.
 #[test]
 fn polling_adds_at_most_a_look_and_half_of_it_in_the_mean() {
     within("T1", [1.75, 1.799]);
@@ -90,7 +94,7 @@ fn polling_adds_at_most_a_look_and_half_of_it_in_the_mean() {
     assert!((mean.value - 0.899).abs() < 0.05, "{}", mean.value);
 }
 
-/// Expects 3.75 ms + dt (1 - a) / a with dt = 1/120 s.
+/// Tests the filter's delay: 3.75 ms + dt (1 - a) / a with the gain a and dt = 1/120 s.
 #[test]
 fn the_filter_of_the_fastrak_is_as_late_as_its_closed_form() {
     for (id, gain) in [("T2", 0.95), ("T3", 0.05)] {

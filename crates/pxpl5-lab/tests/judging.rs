@@ -1,5 +1,5 @@
-//! Tests that pixel errors are evaluated at the depth of the content and at the instant of its light, for moving
-//! objects too.
+//! Tests that pixel errors are evaluated at the depth of the content, and at the instant when the pixel is lit. This
+//! also holds for moving objects.
 
 use glam::{DVec2, Vec3};
 use pxpl5_machine::MachineConfig;
@@ -14,9 +14,9 @@ use tracking::motion::{End, Motion, Recording, Slide, Still};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Focal length in pixels for 640 pixels over 60 degrees.
+/// Focal length in pixels of a picture with 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
-/// A field that is well past the start.
+/// Number of an evaluated field, long after the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
 fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
@@ -28,7 +28,7 @@ fn run(scene: Scene, head: Head) -> Result<Outcome, ExperimentError> {
     experiment.head(head).fields(FIELD.0 + 2).pixels(Pixels::Off).run()
 }
 
-/// Returns the view whose picture a field shows, and the time at which a pixel of the picture lights.
+/// Returns the head pose whose picture a field shows, and the time at which the given pixel is lit.
 fn view_of_field(outcome: &Outcome, (x, y): (u32, u32)) -> (SampledPose, Time) {
     let display = outcome.record().display();
     let in_field = outcome.pictures().iter().find(|times| display.period_at(times.shown_at) == FIELD);
@@ -64,7 +64,7 @@ fn a_translation_is_off_by_focal_length_times_way_over_distance() {
     }
 }
 
-/// Returns a scene with a wheel 2 m in front of the viewer, which swings about the axis of view.
+/// Returns a scene with a wheel 2 m in front of the viewer. The wheel swings about the axis of view.
 fn wheel(hinge: Hinge) -> Scene {
     let corner = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());

@@ -4,11 +4,11 @@ use pxpl5_lab::figures::Bench;
 use pxpl5_lab::levels::deviation_percent;
 use pxpl5_run::Level;
 
-/// Figures that depend on the times of primitives, including application scenes with culled structures and limits of
+/// Figures that depend on the times of primitives. They include application scenes without back faces and limits of
 /// Slats.
 const MOVED: [&str; 6] = ["4", "7", "7b", "12", "14", "15"];
 
-/// Maximum difference between the levels in percent: the goal of the table.
+/// Maximum difference between the two levels in percent, which is the goal for the timing table.
 const MOST_PERCENT: f64 = 5.0;
 
 #[test]

@@ -1,6 +1,6 @@
 //! Tests of limits found by simulation, and of the analytic level's predictions for random machines.
 //!
-//! Each case follows from a number, so that a failure names it. `PXPL5_FUZZ=10` runs ten times as many cases, and
+//! Each case follows from a number, which a failure states. `PXPL5_FUZZ=10` runs ten times as many cases, and
 //! `PXPL5_FUZZ_FROM` starts at another number.
 
 use pxpl5_lab::ExperimentFile;
@@ -63,13 +63,13 @@ fn machine(round: u64) -> (Vec<String>, TestScene) {
     (settings, dice.of(&TestScene::ALL))
 }
 
-/// Largest differences that the documents of the analytic level allow: in percent or a few triangles. If time hardly
-/// grows with the number of triangles, the bound is in milliseconds: 1 % of a field.
+/// Largest difference in percent that the documents of the analytic level allow; a few triangles are also allowed. If
+/// the time hardly grows with the number of triangles, the maximum difference is in milliseconds: 1 % of a field.
 const BOUND_PERCENT: f64 = 5.0;
 const BOUND_TRIANGLES: u32 = 3;
 const BOUND_MS: f64 = 0.167;
 
-/// Returns the time at which the copies of a field begin at the analytic level, in milliseconds after the retrace.
+/// Returns the time in milliseconds from the retrace to the first copy of a field, at the analytic level.
 fn copies_begin_ms(query: &LimitQuery, triangles: u32) -> f64 {
     let scene = test_scene(query.criterion.scene, triangles);
     let experiment = Experiment::with(query.config.clone(), Arc::clone(&query.pipeline), Arc::new(scene));
@@ -126,8 +126,8 @@ fn boards(gps: u32, renderers: u32) -> Vec<String> {
     ]
 }
 
-/// 34 GPs share six channels to 20 renderers. An earlier version of the analytic level gave 1,299 triangles, but 850
-/// are drawn.
+/// Tests 34 GPs that share six channels to 20 renderers. An earlier version of the analytic level gave 1,299 triangles,
+/// but only 850 are drawn in time.
 #[test]
 fn many_senders_are_limited_by_the_channels_that_they_share() {
     let simulated = query(&boards(34, 20), TestScene::Typical);
@@ -137,8 +137,9 @@ fn many_senders_are_limited_by_the_channels_that_they_share() {
     assert!((analytic / simulated - 1.0).abs() < BOUND_PERCENT / 100.0, "{analytic} for {simulated}");
 }
 
-/// On 13 GPs and 20 renderers 795 triangles are in time and 796 are not. (807 were an island until bottom regions
-/// waited for an acknowledgement of the top regions. src/limit/search.rs has the property tests of islands.)
+/// Tests the limit of 13 GPs and 20 renderers: 795 triangles are in time and 796 are not. (Once 807 were in time too,
+/// until bottom regions waited for an acknowledgement of the top regions. src/limit/search.rs has the property tests of
+/// such islands.)
 #[test]
 fn the_answer_is_the_size_below_the_first_miss() {
     let query = query(&boards(13, 20), TestScene::Typical);
@@ -148,7 +149,7 @@ fn the_answer_is_the_size_below_the_first_miss() {
     assert_eq!((found.triangles, found.first_miss, found.island), (795, Some(796), None));
 }
 
-/// The test tries every size up to the result. The search must have found the smallest size that misses.
+/// Tests every size up to the result. The search must have found the smallest size that misses the goal.
 #[test]
 fn the_first_miss_is_the_least_size_that_misses() {
     for (gps, renderers, copy) in [(1, 5, "split"), (3, 9, "whole")] {

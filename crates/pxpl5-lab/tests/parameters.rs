@@ -79,7 +79,7 @@ fn every_table_of_the_i860_is_listed_and_its_last_part_is_the_numbers_name() {
     assert!(error.contains("did you mean `i860.dram.page_bytes`"), "{error}");
 }
 
-/// Returns the trace hash of a run at the cycle level, and the sum of all its TRANSFORM times in ms.
+/// Returns the trace hash of a run at the cycle level, and the sum of all of its TRANSFORM times in ms.
 fn traced(settings: &[&str]) -> (String, f64) {
     let plan = plan(&[&["level=cycle"], settings].concat());
     let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
@@ -90,8 +90,8 @@ fn traced(settings: &[&str]) -> (String, f64) {
     (outcome.report().trace_hash, total_ms)
 }
 
-/// Slower memory slows the code that reads it. With ten times the time for every access, TRANSFORM is slower. Runs
-/// without executed code do not depend on these parameters.
+/// Tests that slower memory slows the code that reads it. If every access takes ten times as long, TRANSFORM is slower.
+/// Runs without executed code do not depend on these parameters.
 #[test]
 fn a_slower_memory_makes_a_run_of_code_slower() {
     let (hash_of_papers, papers_ms) = traced(&[]);
@@ -104,7 +104,8 @@ fn a_slower_memory_makes_a_run_of_code_slower() {
     assert_eq!(plan(&slow).machine.overrides().len(), 2);
 }
 
-/// The configured clocks apply both to remembered blocks of code and to blocks that are counted each time.
+/// Tests that the configured clocks apply to all blocks of code: those whose clocks are cached, and those that are
+/// counted each time.
 #[test]
 fn what_is_memoised_has_the_clocks_of_the_same_memory() {
     let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
@@ -113,8 +114,8 @@ fn what_is_memoised_has_the_clocks_of_the_same_memory() {
     assert_eq!(experiment.run().expect("it is small").report().trace_hash, counted.report().trace_hash);
 }
 
-/// Returns the mean time from head to light in ms. The optical tracker reports a thousand times a second, so the age
-/// of a report at the host equals the tracker's latency to a millisecond.
+/// Returns the mean latency from head to display in ms. The optical tracker reports a thousand times a second, so the
+/// age of a report at the host equals the tracker's latency to a millisecond.
 fn head_to_light_ms(latency_ms: u64) -> f64 {
     let latency = format!("tracking.optical.latency={latency_ms}");
     let plan = plan(&["head.motion=pan:40", "head.predict=none", "tracking.optical.rate=1000", "fields=60", &latency]);
@@ -128,7 +129,7 @@ fn a_tracker_that_is_later_makes_head_to_light_longer_by_as_much() {
     assert!((longer - 30.0).abs() < 1.0, "{longer} ms for 30 ms");
 }
 
-/// Returns the mean time from the head's pose to the arrival of its report, in ms.
+/// Returns the mean time in ms from the head's pose until its report arrives at the host.
 fn tracking_ms(settings: &[&str]) -> f64 {
     let head = ["head.motion=pan:40", "head.predict=none", "fields=240"];
     let plan = plan(&[&head[..], settings].concat());
@@ -136,8 +137,8 @@ fn tracking_ms(settings: &[&str]) -> f64 {
     outcome.report().head.expect("a head").end_to_end.tracking_ms
 }
 
-/// Reports wait for half a polling period on average. The newest of several reports that one poll finds waits for
-/// less.
+/// Tests the wait for a poll. Reports wait for half a polling period on average. If one poll finds several reports, the
+/// newest waits for less.
 #[test]
 fn the_kernels_poll_delays_the_fastrak_too() {
     let patched = tracking_ms(&["head.tracker=fastrak"]);

@@ -1,5 +1,5 @@
-//! Tests every predictor on one experiment, tuned for its pipeline. For a still head, no predictor increases the
-//! error due to noise beyond the error without prediction.
+//! Tests every predictor on one experiment, tuned for its pipeline. For a still head, the noise error with a predictor
+//! must not exceed the error without prediction.
 
 use pxpl5_lab::compare::{Predictors, predictors};
 use pxpl5_lab::{ExperimentFile, registry};

@@ -1,5 +1,5 @@
-//! Tests of due pictures. They are counted in the display's own periods and in a stated window. A run that shows no
-//! picture reports so.
+//! Tests of due pictures. They are counted in the display's own periods, over a stated part of the run. A run that
+//! shows no picture reports this fact.
 
 use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_machine::MachineConfig;
@@ -29,8 +29,8 @@ fn on_a_display_of_625_or_1051_lines_rendering_control_misses_no_retrace_either(
     }
 }
 
-/// Returns a machine on which a triangle that covers the screen takes two fields of each renderer. A frame of 12
-/// triangles for two eyes takes about 200 fields: 20 regions over 5 renderers, each 12 times.
+/// Returns a machine on which a screen-filling triangle takes two fields of each renderer. A frame of 12 triangles for
+/// two eyes takes about 200 fields: 20 regions over 5 renderers, for each triangle and eye.
 fn slow() -> MachineConfig {
     let mut config = MachineConfig::small_hmd();
     let clocks = config.renderer.clock_hz / 30;

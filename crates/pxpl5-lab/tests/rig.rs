@@ -1,5 +1,5 @@
-//! Tests of the rig in front of the machine. Outside and inside measurements agree, and each reveals a fault of the
-//! other.
+//! Tests of the pendulum rig in front of the machine. Outside and inside measurements agree, and each reveals a fault
+//! of the other.
 
 use pphigs::FrameView;
 use pxpl5_lab::rig::{Rig, RigRunError};
@@ -53,8 +53,8 @@ fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
     }
 }
 
-/// A display that follows the head's rotation shows the rotation before any frame. Under frameless rendering the
-/// light comes from one block, not from a frame.
+/// Tests two pipelines that the rig refuses. A display that follows the head's rotation shows the rotation before any
+/// frame. Under frameless rendering the light comes from one block of pixels, not from a frame.
 #[test]
 fn pipelines_without_frames_are_refused_with_the_reason() {
     for (pipeline, reason) in [
@@ -88,7 +88,7 @@ fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
     assert!(ms(found.greatest_s) < least + line_ms / 2.0 + 1e-3, "{found:?}");
 }
 
-/// Rendering Control with an injected fault.
+/// The pipeline Rendering Control with an injected fault.
 #[derive(Debug)]
 struct Faulty {
     inner: RenderingControl,
@@ -97,13 +97,14 @@ struct Faulty {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
-    /// The time stamps of pictures are a field too early, so the inside measurement is wrong.
+    /// The time stamps of pictures are one field too early, so that the inside measurement is wrong.
     EarlyStamps,
-    /// Frames show the pose of the previous frame, so light comes a frame late while the time stamps stay the same.
+    /// Frames show the pose of the previous frame. Their light comes one frame late, while the time stamps stay the
+    /// same.
     StaleViews,
 }
 
-/// Returns views that lag one view behind.
+/// Returns head poses that lag behind by one pose.
 fn stale(views: &Views) -> Views {
     let views = Arc::clone(views);
     let last: Mutex<Option<FrameView>> = Mutex::new(None);

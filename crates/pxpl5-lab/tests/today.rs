@@ -1,4 +1,5 @@
-//! Tests of the settings of today's displays: displays by numbers, and devices that move pictures to the newest pose.
+//! Tests of the settings for today's displays: displays with given parameters, and devices that move pictures to the
+//! newest pose.
 
 use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_run::{Every, Raster, Reprojection, Warp};
@@ -15,7 +16,7 @@ fn refusal(text: &str) -> String {
     resolved.expect_err("no experiment").to_string()
 }
 
-/// Returns a number of the first display of a plan.
+/// Returns the value of a parameter of a plan's first display.
 fn number(plan: &Plan, path: &str) -> u64 {
     match plan.machine.parameters().into_iter().find(|parameter| parameter.path == path).expect("known").value {
         parameters::Value::Whole(value) => value,

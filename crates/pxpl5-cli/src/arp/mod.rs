@@ -30,13 +30,14 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Walk once and print draws, update rates and the width of the gaps at cuts.
+    /// Simulate one walk; print numbers of draws, update rates and the width of the gaps at cuts.
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk.
     Compare(compare::CompareArgs),
     /// Compare the papers' figures with an ideal renderer, and draw their pictures.
     Figures(figures::FiguresArgs),
-    /// Rank the interpretations of what the paper leaves open about table 1, each rate left out in turn.
+    /// Rank the interpretations of the questions that the paper leaves open about table 1; each rate is left out in
+    /// turn.
     Interpretations(interpretations::InterpretationsArgs),
     /// Print the face and the texels that a pixel shows at an orientation of the head.
     Texel(texel::TexelArgs),

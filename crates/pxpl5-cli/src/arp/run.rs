@@ -11,7 +11,7 @@ use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Walk once and print draws, update rates and the width of the gaps at cuts.
+/// Simulate one walk; print numbers of draws, update rates and the width of the gaps at cuts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json

@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// The scene of a walk, and the settings that differ from their defaults.
 #[derive(Args, Debug)]
 pub(super) struct WalkArgs {
-    /// A TOML file of settings by path, with `scene`; options override the file.
+    /// A TOML file of settings by path, including `scene`; options override the file.
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// A built-in scene with a path (gallery, gallery:full); default gallery.
@@ -38,14 +38,14 @@ pub(super) struct WalkArgs {
     /// Falloff of the movement of vertices near cuts: none, linear, smoothstep or step; default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
-    /// Unit of scan-out before which the orientation is latched: field, line or pixel; default field.
+    /// Unit of scan-out before which the head's orientation is read: field, line or pixel; default field.
     #[arg(long, value_name = "LATCH")]
     latch: Option<String>,
     /// Lens before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel;
     /// default flat.
     #[arg(long, value_name = "LENS", allow_hyphen_values = true)]
     lens: Option<String>,
-    /// Renderer of the faces: ideal, or a number of triangles a second; default ideal.
+    /// Renderer of the cube faces: ideal, or a number of triangles per second; default ideal.
     #[arg(long, value_name = "SOURCE")]
     source: Option<String>,
     /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8,

@@ -9,7 +9,7 @@ use pxpl5::arp::address_recalculation::{ArpConfig, Footprint, Orientation, Texel
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// Print the face and the texels that a pixel shows at an orientation of the head.
+/// Print the cube face and the texels that a pixel shows at an orientation of the head.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp texel 0 0 --yaw 30

@@ -34,7 +34,7 @@ have the values of their papers. The command `pxpl5 run --pipeline NAME` runs on
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Rows to run; default: one or two of each family of pipelines.
+    /// Rows to run; default: one or two rows of each family of pipelines.
     #[arg(long, value_name = "ROW,...", value_delimiter = ',')]
     only: Vec<String>,
     /// Run all rows.
@@ -44,21 +44,22 @@ pub(crate) struct CompareArgs {
     /// The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
-    /// Also search for the largest number of triangles that each pipeline can draw in time, which takes longer than all runs.
+    /// Also search for the largest number of triangles that each pipeline can draw in time; the search takes longer
+    /// than all runs.
     #[arg(long, conflicts_with = "no_limits")]
     limits: bool,
-    /// Do not search for it, which is the default.
+    /// Do not search for the largest number of triangles, which is the default.
     #[arg(long, alias = "no-triangles", hide = true)]
     no_limits: bool,
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
-    /// Write into this folder: comparison.json, rows.csv, errors.csv, the drawings (error over time, its
-    /// distribution, against latency and against prediction interval), gallery.html with the picture of every
-    /// pipeline, and the pictures of a vertical edge.
+    /// Write into this folder: comparison.json, rows.csv, errors.csv, charts of the error (over time, its distribution,
+    /// against latency and against prediction interval), gallery.html with the picture of every pipeline, and the
+    /// pictures of a vertical edge.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Speed of the pan in the edge pictures, degrees per second.
+    /// Speed of the head's turn in the pictures of a vertical edge, degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
     #[command(flatten)]

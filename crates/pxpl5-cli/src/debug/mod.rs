@@ -35,10 +35,10 @@ docs/guide/debugger.md explains the commands.")]
 pub(crate) struct DebugArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Execute these commands, divided by semicolons, print their output, and end.
+    /// Execute these debugger commands, separated by semicolons, print their output, and end.
     #[arg(long = "do", value_name = "COMMANDS")]
     commands: Option<String>,
-    /// Execute the commands of a file, one command a line, print their output, and end.
+    /// Execute the debugger commands of a file, one command per line, print their output, and end.
     #[arg(long, value_name = "FILE", conflicts_with = "commands")]
     do_file: Option<PathBuf>,
     #[command(flatten)]

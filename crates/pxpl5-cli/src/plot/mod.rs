@@ -19,9 +19,9 @@ use std::path::{Path, PathBuf};
 
 /// Plot the results of a sweep or a comparison with intervals, and write the numbers to a second file.
 ///
-/// The command writes three files: the figure, FIG.csv and FIG.json. FIG.csv has the mean, the standard deviation, n and
-/// the interval of the mean of every point. The interval is Student's t, of the logarithm for positive values. FIG.json
-/// has the origin of the numbers.
+/// The command writes three files: the figure, FIG.csv and FIG.json. For every point, FIG.csv has the mean, the
+/// standard deviation, n and the interval of the mean. The interval is Student's t; for positive values it is computed
+/// from their logarithms. FIG.json states the results and options from which the figure was made.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
@@ -40,16 +40,16 @@ pub(crate) struct PlotArgs {
     /// Column on the y axis, a number.
     #[arg(long, value_name = "COLUMN")]
     y: String,
-    /// Draw one curve for each value, or combination of values, of these columns.
+    /// Draw a separate curve for each value, or combination of values, of these columns.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     by: Vec<String>,
     /// Take the mean over these columns and draw its interval as a band.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
     band: Vec<String>,
-    /// Use only rows with this value; may be repeated.
+    /// Use only rows with this value in this column; may be repeated.
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
     only: Vec<(String, String)>,
-    /// Confidence of the intervals, between 0 and 1. The rows of a comparison have the confidence with which they were made.
+    /// Confidence of the intervals, between 0 and 1. Rows of a comparison keep the confidence of that comparison.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
     /// File of the figure: .svg; with the feature `print` also .png (300 dots per inch) and .pdf.

@@ -14,8 +14,8 @@ use pxpl5::volume::compare::{VariantRow, Viewpoint, VolumeComparison, compare, v
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all clips and projections: brightness over radius, dead zone, connected share, fragments, passes, volumes
-/// a second.
+/// Compare all clips (ways to cut the scene into slices) and projections: brightness over radius, dead zone, connected
+/// share, fragments, passes, volumes per second.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume compare --scene mig
@@ -25,7 +25,8 @@ The command draws every variant of clip, projection, samples and coverage. Of th
 pub(super) struct CompareArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and an eye's view of every variant.
+    /// Write into this folder: comparison.json, rows.csv, brightness.svg, and a picture of every variant as an eye sees
+    /// it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Width and height of each picture, pixels.

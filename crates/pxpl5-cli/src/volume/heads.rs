@@ -16,11 +16,12 @@ use std::path::Path;
 /// Options of a viewer whose head moves around the volume.
 #[derive(Args, Debug)]
 pub(super) struct HeadArgs {
-    /// View along a motion of a head, and compare with a head-mounted display: still, pan:DEG_PER_S, slide:M_PER_S,
-    /// sine:DEG:HZ, pendulum, synthetic:SEED or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl).
+    /// Show the volume to a moving head, and compare it with a head-mounted display. Motions: still, pan:DEG_PER_S,
+    /// slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording (FILE.csv, FILE.txt, FILE.tum or
+    /// FILE.jsonl).
     #[arg(long, value_name = "MOTION", conflicts_with_all = ["azimuth", "elevation", "distance", "cut", "lambert", "undithered", "exposure"])]
     pub(super) head: Option<String>,
-    /// Latency of the head-mounted display, ms; default: the volume's own latency by the model of its time.
+    /// Latency of the head-mounted display, ms; default: the estimated latency of the volume itself.
     #[arg(long, value_name = "MS", requires = "head", allow_negative_numbers = true)]
     latency: Option<f64>,
     /// Length of the motion, seconds.

@@ -17,10 +17,10 @@ use std::path::PathBuf;
 /// Options of the eye that looks at a volume.
 #[derive(Args, Debug)]
 struct EyeArgs {
-    /// Angle around the axis from +z to +x, degrees.
+    /// Direction of the eye around the axis, from +z to +x, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
     azimuth: f64,
-    /// Angle above the horizon, degrees.
+    /// Direction of the eye above the horizon, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 25.0, allow_negative_numbers = true)]
     elevation: f64,
     /// Distance of the eye from the middle of the display, in radii of the display.
@@ -29,15 +29,15 @@ struct EyeArgs {
     /// Width and height of the picture, pixels.
     #[arg(long, value_name = "PX", default_value_t = 512, value_parser = whole::<u32>(1, 8192))]
     size: u32,
-    /// Omit the part of the volume between two angles around the axis from +x to +z, degrees: a cutaway.
+    /// Cut away the part of the volume between two angles around the axis from +x to +z, degrees.
     #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true, value_parser = cut)]
     cut: Option<[f64; 2]>,
-    /// Dim each pixel by the angle between the screen and the eye.
+    /// Dim each pixel according to the angle between the screen and the eye.
     #[arg(long)]
     lambert: bool,
 }
 
-/// Render an eye's view of one turn: the sum of all lit pixels of all slices.
+/// Render what an eye sees during one turn of the display: the sum of all lit pixels of all slices.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume view --scene head --azimuth 40 --elevation 25 --out view.png
@@ -55,7 +55,7 @@ pub(super) struct ViewArgs {
     /// Show the colours before halftoning.
     #[arg(long)]
     undithered: bool,
-    /// Brightness of one lit pixel of one slice, in steps of 255; default: 98 % of the picture stays below white.
+    /// Brightness of one lit pixel of one slice, in units of 1/255; default: 98 % of the picture stays below white.
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
     #[command(flatten)]
@@ -65,7 +65,7 @@ pub(super) struct ViewArgs {
     out: PathBuf,
 }
 
-/// Write a turn around the volume as an animated PNG with one exposure.
+/// Write an animated PNG in which the eye goes once around the volume, with the same exposure for all pictures.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume film --scene mig --frames 60 --size 256 --out turn.png

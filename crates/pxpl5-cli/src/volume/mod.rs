@@ -37,11 +37,11 @@ enum VolumeCommand {
     Sheet(slices::SheetArgs),
     /// Draw one slice, before and after halftoning.
     Slice(slices::SliceArgs),
-    /// Render an eye's view of one turn.
+    /// Render what an eye sees during one turn of the display.
     View(look::ViewArgs),
-    /// Write a turn around the volume as an animated PNG.
+    /// Write an animated PNG in which the eye goes once around the volume.
     Film(look::FilmArgs),
-    /// Compare all clips and projections.
+    /// Compare all clips (ways to cut the scene into slices) and projections.
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),

@@ -24,7 +24,7 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
     /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning,
-    /// the tiles of all batches, and an eye's view.
+    /// the tiles of all batches, and a picture as an eye sees the volume.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.

@@ -32,7 +32,7 @@ pub(super) struct VolumeSettingArgs {
     pub(super) settings: SettingOptions,
 }
 
-/// The settings of a volume without a scene, for commands that choose their own scenes.
+/// Settings of a volume (slices of a volumetric display), for commands that choose their own scenes.
 #[derive(Args, Debug)]
 pub(super) struct SettingOptions {
     /// Method of clipping the scene to a slice: prism, user-planes, exact, tapered:PX, parallel:PX or hyperbolic:PX2;

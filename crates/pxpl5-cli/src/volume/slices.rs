@@ -31,7 +31,7 @@ pub(super) struct SheetArgs {
   pxpl5 volume slice 50 --scene head --out slice.png
   pxpl5 volume slice 50 --scene head --show tiles --out tiles.png")]
 pub(super) struct SliceArgs {
-    /// Number of the slice in the turn, from 0.
+    /// Number of the slice within one turn of the display, from 0.
     #[arg(value_name = "K")]
     slice: u32,
     #[command(flatten)]

@@ -43,13 +43,13 @@ pub(super) struct SweepArgs {
     /// Folder for rows.jsonl, times.jsonl and results.csv.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Keep the finished points and draw the others.
+    /// Keep the finished points and draw only the others.
     #[arg(long)]
     resume: bool,
     /// Draw share I of N disjoint shares.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Number of worker threads of each volume; default: one for each core. Volumes are drawn one after the other.
+    /// Number of worker threads for each volume; default: one for each core. Volumes are drawn one after the other.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the file for all points; may be repeated.

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A temporary folder that is removed when dropped.
+/// A temporary folder, which is removed when the value is dropped.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -58,7 +58,7 @@ pub fn err(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Returns the JSON object that is the whole standard output.
+/// Returns the JSON object that a command printed as its whole standard output.
 pub fn json(output: &Output) -> serde_json::Value {
     assert!(output.status.success(), "{}", err(output));
     serde_json::from_slice(&output.stdout).expect("one JSON object on standard output")

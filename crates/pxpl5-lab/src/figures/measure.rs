@@ -40,23 +40,23 @@ pub struct Bench {
     pub(crate) applications: Arc<Applications>,
 }
 
-/// Lengths of TRANSFORM and RENDER in figure 6, in milliseconds. Several lengths are averaged, because the swap waits
-/// for a retrace.
+/// Times of TRANSFORM and RENDER for one eye in figure 6, in milliseconds. The results for several times are averaged,
+/// because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of fields of figures 16b and 16c, whose frames take about 30 fields each.
+/// Number of display fields in the runs for figures 16b and 16c, whose frames take about 30 fields each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
-/// Parameters of the code of Rendering Control.
+/// Paths of the parameters that hold times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of views of figure 8.
+/// Number of head poses from which each scene is seen in figure 8.
 const VIEWS: u64 = 40;
-/// Time between two views of figure 8 in picoseconds.
+/// Time between two head poses of figure 8 in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// Returns a bench with the unchanged presets, and 10 seeds of 150 frames.
+    /// Returns settings with unchanged presets, and with 10 seeds of 150 frames for figure 7.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
@@ -69,13 +69,13 @@ impl Bench {
         }
     }
 
-    /// Returns the bench with another number of seeds and frames for the fly-throughs.
+    /// Returns the same settings with another number of seeds and frames for the fly-through of figure 7.
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
     }
 
-    /// Returns the bench with the times of primitives of executed code, for the code that each preset runs.
+    /// Returns the same settings with primitive times of executed code. Each preset gets the times of its own code.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
         // Each preset runs its own code, so each has its own times.
@@ -94,7 +94,7 @@ impl Bench {
         self
     }
 
-    /// Measures a figure.
+    /// Measures the figure with the number `id`.
     ///
     /// # Errors
     ///
@@ -138,7 +138,7 @@ impl Bench {
         }
     }
 
-    /// Returns the machine of a preset with the bench's changes.
+    /// Returns the machine of a preset, with the parameters that these settings change.
     ///
     /// # Errors
     ///
@@ -158,14 +158,14 @@ impl Bench {
         Ok(machine)
     }
 
-    /// Returns the bench with another interpretation of the papers.
+    /// Returns the same settings with another interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
     }
 
-    /// Runs an experiment with a built-in scene at the bench's level, without pixels. The result is cached, because
-    /// several figures and interpretations share experiments.
+    /// Runs an experiment with a built-in scene at the chosen level of modelling, without pixels. The result is cached,
+    /// because several figures and interpretations share experiments.
     fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Arc<Summary>> {
         // The key needs an experiment, but the scene is loaded only if the result is not cached.
         let empty = self.applications.scene("full-screen:1", false)?;
@@ -194,7 +194,7 @@ impl Bench {
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Measures figure 3: the latency if everything except COPY costs no time.
+    /// Measures figure 3: the latency if everything except COPY takes no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -208,8 +208,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.iter().copied())))
     }
 
-    /// Computes figure 16: the number of screen-filling triangles that the slaves' bins hold for one eye, or for
-    /// both.
+    /// Computes figure 16: the number of screen-filling triangles whose entries fit in the slaves' bins, for one eye or
+    /// for both.
     fn most_in_bins(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
@@ -218,8 +218,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17, over all lines unless the bench sets a line. The rig's events do not depend on the level
-    /// or on the definition of samples.
+    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line. The rig's measurement
+    /// does not depend on the level of modelling or on the definition of latency samples.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
@@ -227,11 +227,11 @@ impl Bench {
         self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
     }
 
-    /// Returns a machine and a scene for which TRANSFORM and RENDER of an eye each take `ms` milliseconds.
+    /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
     ///
-    /// RENDER takes that time because enough triangles cover the screen. Slower renderers would distort the result:
-    /// commands that wait behind a full input FIFO, such as a copy command, would wait longer by the same factor.
-    /// TRANSFORM takes that time because its code is slow, which delays nothing else.
+    /// RENDER takes this time because enough triangles cover the screen. Slower renderers would distort the result.
+    /// Commands that wait behind a full input FIFO, such as a copy command, would also wait longer by the same factor.
+    /// TRANSFORM takes this time because its code is slow, which delays nothing else.
     fn stages_of(&self, ms: f64) -> Result<(MachineConfig, String)> {
         let mut machine = self.machine("small-hmd")?;
         let slaves = machine.n_gps as u64 - 1;
@@ -269,8 +269,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. `seeds_of_one` divides the number of
-    /// seeds.
+    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds is divided by
+    /// `seeds_of_one`.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
@@ -311,8 +311,8 @@ impl Bench {
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
-    /// Returns the experiment of a fly-through, with two fields a frame (30 Hz). Slower frames leave fewer frames in
-    /// the run.
+    /// Returns the experiment of a fly-through. Its length allows two display fields per frame (30 Hz). If frames take
+    /// longer, the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
         let machine = self.reading.on(self.machine(self.reading.machine)?)?;
@@ -340,8 +340,8 @@ impl Bench {
         Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
-    /// Returns the largest number of triangles of Slats. The result is cached, because two figures need the same
-    /// search.
+    /// Returns the largest number of triangles that Slats draws in time. The result is cached, because two figures need
+    /// the same search.
     fn most(&self, preset: &str, pipeline: Slats) -> Result<u32> {
         let query = self.limit_query(preset, pipeline)?;
         let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
