@@ -47,8 +47,8 @@
 //! # Timing
 //!
 //! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of simultaneous freezes
-//! only the longest counts, but cache misses add up. Every row can be disabled or given another cost. Every DRAM time is
-//! a parameter with an allowed range. A [`Profile`] accounts for every clock.
+//! only the longest counts, but cache misses add up. Every row can be disabled or given another cost. Every DRAM time
+//! is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.

@@ -290,7 +290,7 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
-    /// Delay and phase of an event that another event schedules, at most twice.
+    /// Delay and phase of an event that the current event schedules.
     type Follow = (u64, u8);
 
     /// Reference model: a queue that keeps all events in one sorted list.

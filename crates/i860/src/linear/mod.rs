@@ -49,7 +49,7 @@
 //! pipe is more urgent than the best operation by more than the *eagerness*. An operation that can be a dual operation
 //! also pushes the other pipe, if no result is lost.
 //!
-//! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes when it hits the caches.
+//! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes if it hits the caches.
 //! A *shake* other than 0 changes the priorities a little. Schedules of the same text then differ by some per cent. A
 //! search can try many values and keep the shortest schedule.
 
