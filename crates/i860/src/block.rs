@@ -107,7 +107,7 @@ const NEVER: u64 = u64::MAX;
 /// length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins. The next field is the pairing mode at this address.
+    /// Address at which the block begins. `mode` is the pairing mode at this address.
     pub(crate) pc: u32,
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.

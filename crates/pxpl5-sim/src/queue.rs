@@ -316,7 +316,8 @@ mod tests {
     }
 
     proptest! {
-        /// Work scheduled for the current instant takes the separate path through `soon`.
+        /// Compares the queue with a sorted list. Work scheduled for the current instant takes the separate path
+        /// through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),
