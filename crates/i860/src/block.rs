@@ -25,7 +25,7 @@ pub(crate) struct Unit {
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
     pub(crate) first: Decoded,
-    /// The core half of a pair.
+    /// The core half of a pair, or `None` for a single instruction.
     pub(crate) second: Option<Decoded>,
 }
 
@@ -107,7 +107,7 @@ const NEVER: u64 = u64::MAX;
 /// length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address and mode in which the block begins.
+    /// Address at which the block begins. `mode` is the pairing mode at this address.
     pub(crate) pc: u32,
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
@@ -130,7 +130,7 @@ pub(crate) struct Block {
     units: Box<[Unit]>,
     /// For each cache line of the block, the index of the first instruction or pair on the line.
     lines: Box<[u8]>,
-    /// Cause of the trap if the slot of the final branch cannot be executed.
+    /// Cause of the trap that is taken if the final branch is executed, because its delay slot cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 

@@ -1,4 +1,4 @@
-//! The bus interface: memory and devices outside the processor.
+//! The interface to the bus: the memory and devices outside the processor.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ pub trait Bus {
     /// [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
     fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped>;
 
-    /// Writes the low `size` (1, 2, 4 or 8) bytes of `value` at `address`.
+    /// Writes the low `size` bytes (1, 2, 4 or 8) of `value` at `address`.
     ///
     /// # Errors
     /// [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.

@@ -39,7 +39,7 @@ impl Code {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
     }
 
-    /// Stores the block that begins at an address.
+    /// Stores a decoded block, which begins at address `pc`.
     #[inline]
     pub(crate) fn put(&mut self, pc: u32, block: Box<Block>) {
         match self.blocks.get_mut(place(pc)) {
@@ -61,7 +61,7 @@ impl Code {
         self.changed = true;
     }
 
-    /// Returns true if every decoded word comes from the program and no store changed it.
+    /// Returns true if every decoded word comes from the assembled program and no store has changed the program.
     pub(crate) fn is_as_assembled(&self) -> bool {
         !self.changed && self.words.is_as_assembled()
     }

@@ -7,7 +7,7 @@ use std::ops::Range;
 pub(crate) struct CodeMap {
     /// Address range of the assembled program, or an empty range without a program.
     program: Range<u32>,
-    /// True if a store has changed a word of the program.
+    /// True if a store has changed a word of the assembled program.
     is_stored_to: bool,
     /// Lowest and highest address of the program and all decoded words.
     range: (u32, u32),

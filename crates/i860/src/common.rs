@@ -1,4 +1,4 @@
-//! State shared by all parts of the clock: the current clock, the profile, the bus and the random source.
+//! State shared by all parts of the clock: the current clock, the profile, the bus and the pseudo-random numbers.
 
 use crate::cache::Chance;
 use crate::dram::{Dram, Transfer};

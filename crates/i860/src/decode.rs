@@ -1,4 +1,4 @@
-//! Decoder from instruction words to [`Instruction`].
+//! Decoder that converts instruction words to [`Instruction`].
 
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;

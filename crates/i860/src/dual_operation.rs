@@ -52,7 +52,7 @@ pub(crate) const ROUTES: [Route; 16] = {
     ]
 };
 
-/// The data paths of pfmam and pfmsm: [`ROUTES`] with `M` for every `A`.
+/// The sixteen data paths of pfmam and pfmsm. They equal [`ROUTES`], with `M` (the multiplier's result) instead of `A`.
 pub(crate) const MULTIPLIER_ROUTES: [Route; 16] = {
     let mut routes = ROUTES;
     let mut n = 0;

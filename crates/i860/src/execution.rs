@@ -7,7 +7,7 @@ pub(crate) struct Execution {
     pub(crate) units: usize,
     /// True if the delay slot was executed.
     pub(crate) slot: bool,
-    /// True if the branch at the end was taken.
+    /// True if the branch at the end of the block was taken.
     pub(crate) taken: bool,
     /// True if the last executed instruction or pair trapped.
     pub(crate) trapped: bool,

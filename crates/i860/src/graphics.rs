@@ -1,4 +1,4 @@
-//! Execution in the graphics unit: long-integer arithmetic, pixel and Z merging, Z checks.
+//! Execution in the graphics unit: integer arithmetic, merging of pixels and depths, comparison of depths.
 
 use crate::cpu::Cpu;
 use crate::instruction::{Flags, Instruction, Op};

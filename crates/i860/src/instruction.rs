@@ -1,6 +1,6 @@
-//! The instruction set as a type: operations, fields, and the units and registers that an operation uses.
+//! The instruction set: operations, instruction fields, and the units and registers that an operation uses.
 
-/// Every operation of the i860 XR. [`Flags`] holds precision, addressing form and pipelining.
+/// Every operation of the i860 XR. [`Flags`] tells precision, addressing form and pipelining.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
@@ -30,17 +30,17 @@ pub enum Op {
     StC,
     /// `ixfr`: copies an integer register to a floating-point register.
     Ixfr,
-    /// `flush`: writes a data-cache line back.
+    /// `flush`: writes a dirty data-cache line back to memory.
     Flush,
     /// `trap`: takes the instruction trap.
     Trap,
-    /// `lock`: begins an interlocked sequence.
+    /// `lock`: begins an interlocked sequence, during which the bus is locked.
     Lock,
     /// `unlock`: ends an interlocked sequence.
     Unlock,
     /// `calli`: calls the address in a register.
     Calli,
-    /// `intovr`: traps if epsr.OF is set.
+    /// `intovr`: traps if the overflow flag epsr.OF is set.
     Intovr,
     /// `bri`: branches to the address in a register.
     Bri,
@@ -64,7 +64,7 @@ pub enum Op {
     BncT,
     /// `bla`: adds two registers, and branches after the delay slot if the loop condition code LCC was set before.
     Bla,
-    /// `addu`: unsigned add; OF and CC receive the carry.
+    /// `addu`: unsigned add. The flags OF and CC receive the carry.
     Addu,
     /// `subu`: src1 - src2, unsigned; sets CC if src2 <= src1.
     Subu,
@@ -100,52 +100,52 @@ pub enum Op {
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
-    /// `pfmul3`: pipelined multiply of doubles through three stages, used by trap handlers to refill the pipe.
+    /// `pfmul3`: pipelined multiply of doubles through three stages. Trap handlers use it to refill the pipe.
     Fmul3,
-    /// `fmlow`: low bits of the product of two significands.
+    /// `fmlow`: multiplies two significands and returns the low bits of the product.
     Fmlow,
     /// `frcp`: first approximation of a reciprocal.
     Frcp,
-    /// `frsqr`: first approximation of a reciprocal root.
+    /// `frsqr`: first approximation of a reciprocal square root.
     Frsqr,
     /// `fadd`, `pfadd`: floating-point add.
     Fadd,
     /// `fsub`, `pfsub`: floating-point subtract.
     Fsub,
-    /// `fix`: converts to an integer, rounded as fsr.RM selects.
+    /// `fix`: converts to an integer. The field fsr.RM selects the rounding.
     Fix,
     /// `famov`, `pfamov`: moves through the adder and converts the precision.
     Famov,
-    /// `pfgt`: sets CC if the first operand is greater.
+    /// `pfgt`: sets the condition code CC if the first operand is greater than the second.
     Pfgt,
-    /// `pfle`: clears CC if the first operand is less or equal.
+    /// `pfle`: clears the condition code CC if the first operand is less than or equal to the second.
     Pfle,
-    /// `pfeq`: sets CC if the operands are equal.
+    /// `pfeq`: sets the condition code CC if the operands are equal.
     Pfeq,
     /// `ftrunc`: converts to an integer, rounded towards zero.
     Ftrunc,
     /// `fxfr`: copies a floating-point register to an integer register.
     Fxfr,
-    /// `fiadd`: adds long integers in the graphics unit.
+    /// `fiadd`: adds 32-bit or 64-bit integers in the graphics unit.
     Fiadd,
-    /// `fisub`: subtracts long integers in the graphics unit.
+    /// `fisub`: subtracts 32-bit or 64-bit integers in the graphics unit.
     Fisub,
     /// `faddp`: adds pixels and merges the sum into the register MERGE.
     Faddp,
     /// `faddz`: adds depths and merges the sum into the register MERGE.
     Faddz,
-    /// `fzchkl`: compares two 32-bit depths and keeps the smaller ones.
+    /// `fzchkl`: compares pairs of 32-bit depths and keeps the smaller depth of each pair.
     Fzchkl,
     /// `form`: bitwise or with the register MERGE, which becomes 0.
     Form,
-    /// `fzchks`: compares four 16-bit depths and keeps the smaller ones.
+    /// `fzchks`: compares pairs of 16-bit depths and keeps the smaller depth of each pair.
     Fzchks,
     /// `pfam`, `pfsm`, `pfmam`, `pfmsm`: dual operations. In the immediate, bit 4 selects subtraction and bits 3:0 are
     /// the DPC field.
     DualOp,
 }
 
-/// Modifier bits of an instruction.
+/// A set of flags that modify an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Flags(pub u8);
 
@@ -157,7 +157,7 @@ impl Flags {
     /// Flag: the operation is pipelined. In dual operations the flag selects `pfam` and `pfsm` instead of `pfmam` and
     /// `pfmsm`.
     pub const PIPELINED: Flags = Flags(4);
-    /// The D bit, which starts and continues dual-instruction mode.
+    /// Flag: the D bit, which starts and continues dual-instruction mode.
     pub const DUAL: Flags = Flags(8);
     /// The S bit: the sources are in double precision.
     pub const SOURCE_DOUBLE: Flags = Flags(16);
@@ -189,9 +189,9 @@ pub struct Instruction {
     pub op: Op,
     /// Number of the destination register. The operation decides if this is an integer or a floating-point register.
     pub dest: u8,
-    /// First source register. For ld.c and st.c, `src2` selects the control register.
+    /// Number of the first source register. (For ld.c and st.c, `src2` selects the control register.)
     pub src1: u8,
-    /// Second source register, or the base register of an address.
+    /// Number of the second source register, or of the base register of an address.
     pub src2: u8,
     /// Operand size in bytes for floating-point loads and stores, 0 for other operations.
     pub size: u8,

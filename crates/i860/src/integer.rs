@@ -1,4 +1,4 @@
-//! Execution in the integer core: arithmetic, logic, shifts, control registers.
+//! Execution of integer instructions: arithmetic, logical operations, shifts, writes of control registers.
 
 use crate::action::CoreAction;
 use crate::cpu::Cpu;

@@ -35,28 +35,29 @@
 //!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
 //! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every host. fsr.FZ flushes results to zero.
 //!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
-//! - A scalar operation, `frcp` and `frsqr` included, destroys the contents of its unit's pipe: they become NaN in this
-//!   model. The assembler warns of code that reads a result from a pipe after a scalar operation.
-//! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not public.
-//! - A trap leaves the processor at the first instruction of its handler, and [`Cpu::step`] returns its cause. Illegal
-//!   words and pairs, a branch in a delay slot and a misaligned pair are instruction traps.
+//! - A scalar operation, also `frcp` or `frsqr`, destroys the contents of its unit's pipe. In this model the contents
+//!   become NaN. The assembler warns of code that reads a result from a pipe after a scalar operation.
+//! - The results of the approximations `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not
+//!   public.
+//! - After a trap, the processor is at the first instruction of the trap handler, and [`Cpu::step`] returns the cause.
+//!   Illegal words and pairs, a branch in a delay slot and a misaligned pair are instruction traps.
 //! - No program can make the model panic. A run ends at its stop address, at a trap, or when its instruction budget is
 //!   used up.
 //!
 //! # Timing
 //!
-//! An instruction or pair issues in one clock unless a row of [`timing::FREEZES`] delays it. Of simultaneous freezes
-//! the longest counts; cache misses add up. Every row can be switched off or given another cost, every DRAM number is a
-//! parameter with an allowed range, and a [`Profile`] accounts for every clock.
+//! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of simultaneous freezes
+//! only the longest counts, but cache misses add up. Every row can be disabled or given another cost. Every DRAM time
+//! is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
 //!
-//! All rows are *assumed* (recollections of Intel's list). Published figures are tests: 2 and 1.5 operations per clock,
-//! 39 clocks for three reciprocal roots, about 48 clocks for a square root. One published figure is a tree-traversal
-//! loop of 117 instructions in 106 clocks. Its description does not suffice to write the same code. The test runs a
-//! loop of the same shape (pairs, odd entry, taken `bnc.t`). The test therefore checks the issue rules and not that
-//! program.
+//! All rows are *assumed*: recollections of Intel's list of instruction timings. Tests compare them with published
+//! figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 clocks for a square root.
+//! One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The description of this loop does
+//! not suffice to write the same code. The test runs a loop of the same shape (pairs, odd entry, taken `bnc.t`). It
+//! therefore checks the issue rules, but not the published program.
 //!
 //! # Speed
 //!
@@ -66,7 +67,7 @@
 //! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
 //! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
 //! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
-//! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this on.
+//! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
 //!
 //! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
 //! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache

@@ -34,7 +34,7 @@ impl Number {
     }
 }
 
-/// All distinct scoreboard states with their numbers.
+/// All distinct scoreboard states with the numbers assigned to them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<PendingWaits, Number>,

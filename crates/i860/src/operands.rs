@@ -54,7 +54,8 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
     Operands { a, b }
 }
 
-/// Returns the last stage of the multiplier for a source precision: the second for double, the third for single.
+/// Returns the contents of the multiplier's last stage. This is the second stage for double-precision sources, and the
+/// third stage for single-precision sources.
 pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }

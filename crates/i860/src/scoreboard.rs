@@ -163,7 +163,7 @@ impl Scoreboard {
         (count <= MOST_WAITS).then_some(left)
     }
 
-    /// Restores the scoreboard from its pending waits `left` at clock `now`.
+    /// Restores the scoreboard at clock `now` from the pending waits `left`.
     pub(crate) fn restore(&mut self, left: &PendingWaits, now: u64) {
         self.pending = 0;
         self.armed = 0;

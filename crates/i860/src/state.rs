@@ -1,6 +1,6 @@
 //! The state that a program can see: registers, control registers, pipes and dual-instruction mode.
 
-/// Bits of the processor status register.
+/// Bits of the processor status register, psr.
 pub mod psr {
     /// BR: break on data read.
     pub const BR: u32 = 1 << 0;
@@ -52,7 +52,7 @@ pub mod psr {
     pub const USER: u32 = CC | LCC | SC | PS | PM;
 }
 
-/// Bits of the extended processor status register.
+/// Bits of the extended processor status register, epsr.
 pub mod epsr {
     /// IL: set between `lock` and `unlock`.
     pub const IL: u32 = 1 << 13;
@@ -64,7 +64,7 @@ pub mod epsr {
     pub const RESET: u32 = 1 | 7 << 8 | 1 << 18;
 }
 
-/// Bits of the floating-point status register.
+/// Bits of the floating-point status register, fsr.
 pub mod fsr {
     /// FZ: flush to zero. Results that underflow become zero.
     pub const FZ: u32 = 1;
@@ -72,7 +72,7 @@ pub mod fsr {
     pub const RM_SHIFT: u32 = 2;
 }
 
-/// Bits of the directory-base register.
+/// Bits of the directory-base register, dirbase.
 pub mod dirbase {
     /// ATE: turns address translation on.
     pub const ATE: u32 = 1;
@@ -153,7 +153,7 @@ pub struct State {
     pub ki: u64,
     /// T, the register that holds a product until a later dual operation adds it.
     pub t: u64,
-    /// MERGE, the result register of the graphics unit.
+    /// MERGE, the register in which the graphics unit collects pixels or depths.
     pub merge: u64,
     /// Pipe of the adder. The last element leaves the pipe next.
     pub adder: [PipeStage; 3],

@@ -7,15 +7,15 @@ use crate::instruction::{Instruction, Op};
 pub(crate) enum Syntax {
     /// No operands: the instruction is only a mnemonic.
     Bare,
-    /// `src1 or immediate, src2, dest`.
+    /// Operands `src1 or immediate, src2, dest`.
     Integer,
-    /// `address, dest`: a load into an integer or floating-point register.
+    /// Operands `address, dest`: a load into an integer register.
     Load,
-    /// `src1, address`: a store from a register.
+    /// Operands `src1, address`: a store from an integer register.
     Store,
-    /// `address, fdest`, optionally with `++`.
+    /// Operands `address, fdest`: a load into floating-point registers. The address can have auto-increment, `++`.
     FloatingLoad,
-    /// `fdest, address`, optionally with `++`.
+    /// Operands `fdest, address`: a store from floating-point registers. The address can have auto-increment, `++`.
     FloatingStore,
     /// `control, dest`: reads a control register.
     LoadControl,
@@ -25,7 +25,7 @@ pub(crate) enum Syntax {
     ToFloating,
     /// `fsrc1, dest`: copies a floating-point register to an integer register.
     ToInteger,
-    /// `address`, optionally with `++`.
+    /// Operand `address`, the only one of `flush`. The address can have auto-increment, `++`.
     Flush,
     /// `src1, src2, dest`, or no operands.
     Trap,
@@ -33,7 +33,7 @@ pub(crate) enum Syntax {
     Register,
     /// `target`: a label or an address as the branch target.
     Branch,
-    /// `src1 or 5-bit constant, src2, target`.
+    /// Operands `src1 or 5-bit constant, src2, target` of a compare-and-branch.
     CompareBranch,
     /// `src1, src2, target`: two integer registers and a branch target.
     LoopBranch,

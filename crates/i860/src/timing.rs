@@ -10,7 +10,7 @@ parameters::parameter_table! {
     /// The constant part of the delay of each row of [`FREEZES`], in the same order. If no published figure narrows a
     /// value, its range is one clock less to one clock more. The reason is that Intel's list is quoted from memory.
     pub struct FreezeClocks {
-        /// Cost of freeze row 1a: instruction-cache miss.
+        /// Cost of freeze row 1a: the instruction cache misses.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
         /// Cost of freeze row 1b: instruction-cache miss while a line fill of the data cache is running.
         instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
@@ -27,7 +27,7 @@ parameters::parameter_table! {
         load_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 7: one of the next two instructions uses the destination of an fld, pfld or ixfr.
         floating_load_use: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; period matrix code issues an extra operation because loads need time";
-        /// Cost of freeze row 8: bc, bnc, bc.t, bnc.t right after addu, adds, subu, subs or a compare.
+        /// Cost of freeze row 8: bc, bnc, bc.t or bnc.t right after addu, adds, subu, subs or a compare.
         condition_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 9: a multiplier operation has the result of the previous operation as its first source.
         multiplier_first_source: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
@@ -40,7 +40,7 @@ parameters::parameter_table! {
         scalar_precision_change: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 10d, in addition to row 10a or 10b: the new operation is pipelined and has a destination.
         scalar_then_pipelined: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 11: multiplier operation right after a double-precision multiply.
+        /// Cost of freeze row 11: a multiplier operation right after a double-precision multiply.
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
         /// Cost of freeze row 12: TLB miss. This row applies only while address translation is on.
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
@@ -82,9 +82,9 @@ parameters::parameter_table! {
     /// Timing of the memory behind the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
     /// the middle of the known values of boards of the period.
     pub struct DramTiming {
-        /// Time from a request to the first 8 bytes if the DRAM row is already open.
+        /// Time from a request to the arrival of the first 8 bytes if the DRAM row is already open.
         first_hit: 8, "clocks", Assumed, 5..=10 in 0..=1_000_000, "line fill of about 14 clocks on boards of the period";
-        /// Time from a request to the first 8 bytes if the DRAM row must be opened.
+        /// Time from a request to the arrival of the first 8 bytes if the DRAM row must be opened.
         first_miss: 11, "clocks", Assumed, 8..=16 in 0..=1_000_000, "line fill of about 16 to 18 clocks when the row changes";
         /// Time between successive 8-byte transfers of a cache line, and between overlapped requests to the open DRAM
         /// row.
@@ -118,7 +118,7 @@ parameters::parameter_table! {
         line_bytes: 32, "bytes", Published, 32..=32, "Intel's manual";
         /// Associativity of both caches: number of lines in each set.
         cache_ways: 2, "lines", Published, 2..=2, "Intel's manual";
-        /// Number of translations in the TLB.
+        /// Number of entries in the TLB. Each entry translates the addresses of one page.
         tlb_entries: 64, "entries", Published, 64..=64, "Intel's manual";
         /// Associativity of the TLB: number of entries in each set.
         tlb_ways: 4, "entries", Assumed, 2..=8, "recollection of Intel's manual";

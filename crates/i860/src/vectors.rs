@@ -20,7 +20,7 @@ pub const BUDGET: u64 = 10_000;
 pub struct Vector {
     /// Identifier, unique in its file.
     pub id: String,
-    /// Group within the collection.
+    /// Group of the vector within the collection.
     #[serde(default)]
     pub group: String,
     /// Description of the tested behaviour.
@@ -31,26 +31,26 @@ pub struct Vector {
     /// Instruction words from `load` on.
     #[serde(deserialize_with = "hex_list")]
     pub code: Vec<u32>,
-    /// Address of the first instruction.
+    /// Address of the first instruction to execute.
     pub entry: u32,
-    /// Address at which the run ends.
+    /// Address at which the run must end.
     pub stop: u32,
-    /// Addresses and words placed in memory before the run.
+    /// Addresses and words that are written to memory before the run.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
     pub expect: Expectation,
 }
 
-/// The expected state after a vector.
+/// The state that is expected after the run of a vector.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
-    /// Integer registers, bit patterns.
+    /// Expected values of the integer registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub r: [u32; 32],
-    /// Floating-point registers, bit patterns.
+    /// Expected values of the floating-point registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Words of memory after the run, by address.
+    /// Addresses and expected words of memory after the run.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -117,14 +117,14 @@ impl Bus for Sparse {
     }
 }
 
-/// One difference between the expected and the found state.
+/// One difference between the expected state and the state after a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// `r5`, `f12`, or the address of a word.
+    /// Name of the register (such as `r5` or `f12`), or address of the memory word.
     pub place: String,
     /// Bit pattern that the vector expects.
     pub expected: u32,
-    /// Bit pattern of this model.
+    /// Bit pattern that the run has produced in this model.
     pub found: u32,
 }
 
@@ -138,14 +138,14 @@ impl fmt::Display for Difference {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The program trapped before its stop address.
+    /// The program caused a trap before it reached its stop address.
     Trapped(Trap),
-    /// The program did not reach its stop address.
+    /// The program used up its instruction budget before it reached its stop address.
     Exhausted {
-        /// Address of the next instruction at the end of the budget.
+        /// Address of the instruction that would have been executed next.
         pc: u32,
     },
-    /// Registers or memory differ.
+    /// The run ended correctly, but some registers or memory words differ.
     Differs(Vec<Difference>),
 }
 
@@ -162,7 +162,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// A line that is no valid vector.
+/// The error for a line that does not contain a valid vector.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
@@ -171,10 +171,10 @@ pub struct MalformedLine {
     pub reason: String,
 }
 
-/// Reads vectors from JSON lines. Empty lines are skipped.
+/// Reads test vectors from text with one JSON object per line. Empty lines are skipped.
 ///
 /// # Errors
-/// The first line that is no valid vector.
+/// Returns the error of the first line that does not contain a valid vector.
 pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     lines.map(|(n, line)| parse_line(n + 1, line)).collect()
@@ -203,16 +203,16 @@ impl Vector {
         memory
     }
 
-    /// Runs the vector on a new processor and compares the state.
+    /// Runs the vector on a new processor and compares the state after the run.
     ///
     /// # Errors
-    /// The differences in the state, or the reason why the program did not reach its stop.
+    /// Returns the differences in the state, or the reason why the program did not reach its stop address.
     pub fn check(&self, config: Config) -> Result<(), Failure> {
         let mut cpu = Cpu::at(config, self.entry);
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the vector on it and compares the state.
+    /// Resets a processor, runs the vector on it and compares the state after the run.
     ///
     /// # Errors
     /// The same as for [`Vector::check`].

@@ -18,7 +18,7 @@ pub enum ParameterError {
     /// The value is not whole, but the field holds whole numbers.
     #[error("{name} must be a whole number, found {found}")]
     NotWhole {
-        /// Field name within its table.
+        /// Field name of the parameter within its table.
         name: &'static str,
         /// Rejected value.
         found: Value,
@@ -26,7 +26,7 @@ pub enum ParameterError {
     /// A value lies outside the limits of the model.
     #[error("{name} must be {} to {}, found {found}", limits.0, limits.1)]
     OutOfLimits {
-        /// Field name within its table.
+        /// Field name of the parameter within its table.
         name: &'static str,
         /// Smallest and largest value that the model can use.
         limits: (Value, Value),

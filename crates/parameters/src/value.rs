@@ -14,7 +14,7 @@ use std::hash::{Hash, Hasher};
 pub enum Value {
     /// An exact whole number: a count, or a time in whole units.
     Whole(u64),
-    /// A measured number, such as an rms error.
+    /// A measured real number, such as an rms error.
     Real(f64),
 }
 

@@ -42,7 +42,7 @@ pub struct DoubleBuffer {
     first_fault: Option<String>,
 }
 
-/// The effect of a message on a [`DoubleBuffer`].
+/// The effect of an arriving message on a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
 pub enum BufferReceipt {
     /// The message was the last one of its region. The time is the arrival of the region's first message.

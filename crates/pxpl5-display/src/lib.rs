@@ -94,7 +94,7 @@ pub enum DisplayOutput {
     },
 }
 
-/// The context through which a display schedules its own events and sends its outputs.
+/// The context of one event, through which a display schedules its own events and sends its outputs.
 pub type DisplayContext = Context<DisplayEvent, DisplayOutput>;
 
 /// Boards that receive pixels from the ring and show them on surfaces.

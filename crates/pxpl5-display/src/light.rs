@@ -71,7 +71,8 @@ mod tests {
         assert!(light(0, 0).is_instant() && !light(0, 1).is_instant());
     }
 
-    /// Mean and variance of the light by summing its brightness: it rises as 1 - e^(-t/r) while it is driven and falls as e^(-t/r) after it.
+    /// Computes mean and variance of a pixel's light by a sum over its brightness. The brightness rises as 1 - e^(-t/r)
+    /// while the pixel is driven, and falls as e^(-t/r) afterwards.
     #[test]
     fn centre_and_width_are_those_of_the_sum_over_the_brightness() {
         let (persistence, response) = (2_000.0_f64, 400.0_f64);

@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// Returns a region of one of four cuts whose borders never coincide.
+    /// Returns one of four kinds of region. Regions of different kinds fill different pixels and share no borders.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [

@@ -21,7 +21,7 @@ pub enum FrameBufferEvent {
     /// The last swap request that arrived before this instant takes effect. A request at this instant waits for the
     /// next retrace.
     Retrace {
-        /// Field that begins.
+        /// Number of the field that begins.
         field: PeriodNumber,
     },
 }
@@ -99,7 +99,7 @@ pub enum FrameBufferFault {
     /// A retrace came at a time that differs from the video timing.
     #[error("retrace {field} expected at {expected}, found at {found}")]
     Retrace {
-        /// Field that begins.
+        /// Number of the field that begins.
         field: PeriodNumber,
         /// Time of the retrace according to the video timing.
         expected: Time,

@@ -30,7 +30,7 @@ pub(crate) struct Segment {
     pub(crate) x: u32,
     /// Number of pixels in the segment.
     pub(crate) length: u32,
-    /// Index of the first pixel in the region's image.
+    /// Index of the segment's first pixel in the region's image.
     pub(crate) index: u32,
     /// Arrival time of the word with the first pixel.
     first_at: Time,

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// field may not have reached a line yet.
 const REMEMBERED: usize = 4;
 
-/// The last fields that were scanned from a buffer, newest first.
+/// Numbers of the last fields that were scanned from a buffer, the newest field first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scans(VecDeque<PeriodNumber>);
 

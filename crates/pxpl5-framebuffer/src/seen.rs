@@ -45,7 +45,7 @@ impl ScannedField {
         self.field
     }
 
-    /// Returns the buffer that was scanned, 0 or 1.
+    /// Returns the number of the buffer that was scanned, 0 or 1.
     #[must_use]
     pub const fn buffer(&self) -> u8 {
         self.buffer

@@ -18,18 +18,18 @@ use std::task::{Context as TaskContext, Poll, Waker};
 /// An event of a graphics processor board.
 #[derive(Clone, Debug)]
 pub enum GpEvent {
-    /// The last word of a message has arrived (phase `Arrive`).
+    /// The last word of a message has arrived. The event belongs to phase `Arrive` of the event queue.
     Delivered(Message),
     /// A receiver has accepted a message of a batch. The number is the ticket from [`GpOutput::Send`]. The event
     /// belongs to phase `Arrive` of the event queue.
     Accepted(u64),
-    /// A field begins (phase `Arrive`).
+    /// A retrace begins a field. The event belongs to phase `Arrive` of the event queue.
     Retrace(PeriodNumber),
-    /// A status line of another board changes (phase `Arrive`).
+    /// A status line of another board has changed. The event belongs to phase `Arrive` of the event queue.
     Status {
-        /// Port of the board whose line changes.
+        /// Port of the board whose status line has changed.
         from: NodeId,
-        /// New value of the line.
+        /// New value of the status line.
         value: u64,
     },
     /// The programs run and read the inputs that have arrived at this instant.
@@ -48,7 +48,7 @@ pub enum GpOutput {
         /// Number of the batch, followed by the index of the message in the batch. The index is in the lower
         /// [`PLACE_BITS`].
         ticket: u64,
-        /// True if the receiver's port stays reserved for the next message.
+        /// True if the receiver's port stays reserved for the next message of this board.
         hold: bool,
     },
 }
@@ -64,7 +64,7 @@ pub struct GpUse {
     pub busy: Span,
     /// CPU time of the software that receives and sends messages.
     pub messages: Span,
-    /// The part of the work that [answers](crate::Gp::answer) messages: bins that are handed over for a token.
+    /// CPU time of work that [answers](crate::Gp::answer) messages. Such work hands over bins in exchange for a token.
     pub tokens: Span,
 }
 
@@ -220,7 +220,7 @@ impl GpBoard {
         }
     }
 
-    /// Schedules [`GpEvent::WorkEnds`] at an instant, unless it is scheduled there already.
+    /// Schedules a [`GpEvent::WorkEnds`] at time `end`, unless one is scheduled there already.
     fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
         if let Some(end) = end.filter(|end| !self.announced.contains(end)) {
             self.announced.push(end);
@@ -389,7 +389,7 @@ mod tests {
         board
     }
 
-    /// Runs the board; every message is accepted as soon as it has left.
+    /// Runs the board on the bench. Every message is accepted as soon as it has left the board.
     fn run(board: &mut GpBoard, bench: &mut TestBench<GpEvent, GpOutput>) {
         let mut told = 0;
         loop {

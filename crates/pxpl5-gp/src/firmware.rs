@@ -78,7 +78,7 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// The i860 that runs code, or `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices transformed since the start.
+    /// Number of vertices that the programs have transformed since the start.
     pub(crate) vertex_transforms: u64,
     /// CPU time requested so far for the software of messages. `answer_work` is the CPU time of work that answers
     /// messages.
@@ -291,7 +291,7 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
-    /// Waits for the next retrace and returns the field that it begins.
+    /// Waits for the next retrace and returns the number of the field that begins with it.
     pub async fn retrace(&self) -> PeriodNumber {
         self.field_from(self.field().next()).await
     }

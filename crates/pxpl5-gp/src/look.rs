@@ -9,7 +9,7 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 /// A snapshot of a graphics processor board at one instant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpSnapshot {
-    /// Programs of the board, the interrupt program first.
+    /// Snapshots of the board's programs, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
     /// Messages that have arrived but were not taken by a program, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,

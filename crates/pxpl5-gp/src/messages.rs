@@ -173,7 +173,8 @@ mod tests {
         }
     }
 
-    /// Waits for a message without paying its cost, so that it is in the inbox when the other program stops the board.
+    /// Waits for a message without spending its CPU time. The message is thus in the inbox when the other program stops
+    /// the board.
     async fn wait(gp: Gp) -> Result<(), Fault> {
         gp.until("nothing", || None::<()>).await;
         Ok(())
@@ -191,7 +192,8 @@ mod tests {
         board
     }
 
-    /// Feeds a board messages of the given lengths. Returns its busy time and the number of messages that it has sent.
+    /// Sends messages of the given lengths to a board. Returns the busy time of the board and the number of messages
+    /// that it has sent.
     fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
         let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
         for (number, words) in (1..).zip(lengths) {

@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// The tracker sampled the pose that the picture shows.
+    /// The tracker sampled the pose of the head that the picture shows.
     Sample,
-    /// The host sends edits, attributes and transforms to the GPs.
+    /// The host sends edits, attributes and transforms to the graphics processors.
     Send,
-    /// The GPs apply the edits.
+    /// The graphics processors apply the edits to the scene.
     Edit,
-    /// The GPs transform primitives to screen space and put commands into bins.
+    /// The graphics processors transform primitives to screen space and put commands into bins.
     Transform,
-    /// The GPs send commands to the renderers until the last one is accepted.
+    /// The graphics processors send commands to the renderers. The stage ends when the last command is accepted.
     Render,
-    /// The renderers send regions to the frame buffer.
+    /// The renderers send their regions to the frame buffer.
     Copy,
     /// The display shows the finished picture from this retrace on.
     Swap,

@@ -67,7 +67,7 @@ pub enum ProcessorFault {
         gp: NodeId,
         /// Address of the first word of the access.
         address: u32,
-        /// Number of requested words.
+        /// Number of words in the requested access.
         words: usize,
     },
     /// The outputs of the two bin contexts would overlap in memory.
@@ -75,7 +75,7 @@ pub enum ProcessorFault {
     NoRoom {
         /// Port of the board.
         gp: NodeId,
-        /// Bin context that requested memory.
+        /// Bin context, 0 or 1, that requested memory.
         context: u8,
         /// Number of bytes that the context needs.
         needed_bytes: u32,
@@ -232,7 +232,7 @@ impl Processor {
         self.gp
     }
 
-    /// Returns the size of the memory in bytes.
+    /// Returns the size of the board's memory in bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u32 {
         self.memory.0.bytes().len() as u32

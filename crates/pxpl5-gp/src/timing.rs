@@ -234,7 +234,8 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fitted times follow from the papers' limits and may lie outside the range of PPHIGS.
+    /// The fitted times follow from published limits of triangles. They may lie outside the range of times for PPHIGS,
+    /// but within the limits of the model.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -242,8 +243,8 @@ mod tests {
         }
     }
 
-    /// 30.0 and 55.8 us are fitted to the limits of 110 and 100 triangles. I3D95 expects a third of the time of 1994
-    /// for code in cache. Slats has no bins.
+    /// The times 30.0 and 55.8 us are fitted to the published limits of 110 and 100 triangles. I3D95 expects a third of
+    /// the time of 1994 for code that fits the instruction cache. Slats has no bins.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];

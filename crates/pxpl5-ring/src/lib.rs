@@ -1,4 +1,4 @@
-//! The ring network of Pixel-Planes 5: eight channels that carry point-to-point messages between the boards.
+//! The ring network of Pixel-Planes 5: eight channels that carry messages between pairs of boards.
 //!
 //! ```text
 //!   Request --> source port: queue, several in flight    --+
@@ -10,30 +10,33 @@
 //!
 //! # Behaviour
 //!
-//! 1. A [`RingEvent::Request`] joins the queue of its source port. A source sends on as many channels at a time as its
-//!    port drives, to different receivers. Messages leave a queue in order.
-//! 2. The message at the head of a queue waits for a free channel, its source's port and its destination. The arbiter
-//!    grants all three together. Heads are granted in the order in which they became heads; at one instant the lowest
-//!    source comes first. A message that must wait does not delay later ones.
-//! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of that time the next
-//!    message is granted. Sending and receiving of one board do not disturb each other.
+//! 1. A [`RingEvent::Request`] puts a message into the queue of its source port. A source can send to different
+//!    receivers
+//!    at the same time, on a limited number of channels. Messages leave a queue in order.
+//! 2. The *head*, the first message of a queue, waits for a free channel, its source's port and its destination. The
+//!    arbiter grants all three together. Heads are granted in the order in which they became heads; at one instant the
+//!    lowest source comes first. A head that must wait does not delay heads that come later in this order.
+//! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of this time the next
+//!    message is granted. A board can send and receive at the same time.
 //! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source. The messages of a
-//!    region transfer therefore follow each other, and transfers come in order of arrival. (Published for frame
-//!    buffers, TR94; assumed for all receivers, because all boards have the same port.)
-//! 5. An *elastic* receiver accepts every word as it comes: graphics processors, frame buffers, the host. Such a
+//!    region transfer therefore follow each other, and transfers come in order of arrival. This rule is published for
+//!    frame buffers (TR94). For all other receivers it is assumed, because all boards have the same port.
+//! 5. An *elastic* receiver accepts every word immediately: graphics processors, frame buffers, the host. Such a
 //!    receiver gets the message when the last word has arrived ([`RingOutput::Delivered`]).
-//! 6. A receiver with a FIFO that may be full (a renderer) gets an announcement of the message
-//!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters
-//!    ([`RingEvent::Accept`]). If that time is later than the earliest possible one, the difference is a *stall*,
-//!    during which channel and ports stay occupied.
-//! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. Full FIFOs therefore never
-//!    block the messages that their boards must send before they can accept more.
+//! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement of the message
+//!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters the FIFO
+//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible one, the difference is a *stall*.
+//!    During a stall, channel and ports stay occupied.
+//! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO
+//!    may
+//!    have to send messages before it can accept more. The remaining channels keep full FIFOs from blocking these
+//!    messages.
 //! 8. No message is dropped. An impossible message (0 words, more than 1,024 words, or a port that does not exist) is
 //!    refused, counted and kept for the report: [`Ring::refusals`].
 //!
 //! # Timing
 //!
-//! [`RingTiming`] has all numbers. For a message granted at `g`, with `h` hops in the direction of travel:
+//! [`RingTiming`] lists all timing parameters. For a message granted at `g`, with `h` hops in the direction of travel:
 //!
 //! | instant | time |
 //! |---|---|
@@ -42,21 +45,21 @@
 //! | last word has arrived; the sender is told ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
-//! A message costs one event, its grant, and a second one if another message waits for its end. All its times are known
-//! at the grant or at the receiver's answer. [`Ring::move_every_word`] disables this optimization. The module
-//! [`reference`](mod@reference) is the reference model: it applies the same rules word by word and shares no code with
-//! the ring. A property test compares all three.
+//! A message needs one event, its grant. It needs a second event if another message waits for its end. All times of a
+//! message are known at its grant or at the receiver's answer. [`Ring::move_every_word`] disables this optimization.
+//! The module [`reference`](mod@reference) is the reference model: it applies the same rules word by word and shares no
+//! code with the ring. A property test compares all three.
 //!
 //! **Not modelled:**
 //!
 //! - routing, check words and the layout of the hardware's queues (the overhead of each message stands for their cost)
-//! - the way of a stall or an acknowledgement back along the ring
+//! - the travel time of a stall or an acknowledgement back along the ring
 //! - the hop latency between two messages of different sources to one destination: on rings of more than 16 boards the
-//!   second may begin to arrive before the first has ended
+//! second message can begin to arrive before the first has ended
 //! - multicast and broken hardware
 //!
-//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order of arrival
-//! is derived: any other order needs 12 instead of 11 region times for 20 field regions over two ports.
+//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order, first come
+//! first served, is derived: any other order needs 12 instead of 11 region times for 20 field regions over two ports.
 
 mod channels;
 mod port;

@@ -67,18 +67,18 @@ pub enum RingOutput {
     Delivered(Message),
     /// Answer to the sender of a message with a ticket: the receiver has accepted the last word.
     Sent {
-        /// Port of the sender.
+        /// Port of the sender of the message.
         source: NodeId,
-        /// [`Request::ticket`] of the message.
+        /// Ticket of the message, as given in [`Request::ticket`].
         ticket: u64,
     },
-    /// Answer to the sender of a message with a ticket: the ring could not carry the message.
+    /// Answer to the sender of a message with a ticket: the ring has refused the message.
     Refused {
         /// Port of the sender, as given in the message.
         source: NodeId,
-        /// [`Request::ticket`] of the message.
+        /// Ticket of the message, as given in [`Request::ticket`].
         ticket: u64,
-        /// Reason of the refusal.
+        /// Reason why the ring has refused the message.
         error: RingError,
     },
 }
@@ -134,7 +134,7 @@ pub enum RingError {
         what: &'static str,
         /// The time that is not a multiple of the tick, in picoseconds.
         found_ps: u64,
-        /// Tick of the reference model.
+        /// Tick of the reference model, the step of its time.
         tick: Span,
     },
     /// The run of the reference model ended before all messages were delivered.

@@ -24,7 +24,7 @@ use std::collections::VecDeque;
 /// list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedMessage {
-    /// Time at which the board passes the message to its port.
+    /// Time at which the sending board passes the message to its port.
     pub at: Time,
     /// Port of the sender.
     pub source: NodeId,
@@ -43,9 +43,9 @@ pub struct CarriedMessage {
     pub channel: usize,
     /// Time at which the message was granted its channel and ports.
     pub granted: Time,
-    /// Time at which the last word entered the receiver.
+    /// Time at which the last word of the message entered the receiver.
     pub last_word_at: Time,
-    /// Time at which channel and ports became free again.
+    /// Time at which the message's channel and ports became free again.
     pub released: Time,
 }
 

@@ -9,7 +9,7 @@ use pxpl5_wire::NodeId;
 pub struct RingStats {
     /// Time for which each channel was occupied, including overhead and stalls.
     pub channel_busy: Vec<Span>,
-    /// Number of messages whose channel has become free.
+    /// Number of messages that have ended, so that their channels have become free.
     pub messages: u64,
     /// Number of words in the ended messages, without the overhead.
     pub words: u64,
@@ -26,7 +26,7 @@ pub struct RingStats {
 pub struct Refusals {
     /// Number of refused messages and answers since the ring was made.
     pub count: u64,
-    /// Time and reason of the first refusal.
+    /// Time of the first refusal and its reason.
     pub first: Option<(Time, RingError)>,
 }
 
@@ -61,7 +61,7 @@ pub enum WaitReason {
     DestinationBusy(NodeId),
     /// The receiver is reserved for an unfinished transfer from the port given here.
     DestinationReserved(NodeId),
-    /// All channels that the message may use are occupied.
+    /// A channel must become free: all channels that the message can use are occupied.
     Channel,
     /// The message can be sent, and the arbiter will grant it at this instant.
     Arbitration,

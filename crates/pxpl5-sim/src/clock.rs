@@ -9,7 +9,8 @@ pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
 ///
-/// Edge n is at floor(n x period), computed from time zero, in 128 bits if 64 are too few.
+/// Edge n is at floor(n x period). The time of each edge is computed from time zero, with 128 bits if 64 bits are too
+/// few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Clock {
     numerator_ps: u64,

@@ -13,21 +13,22 @@
 //!
 //! # Ordering contract
 //!
-//! 1. Events happen in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then boards *work* on
-//!    them, then probes *observe*.
-//! 2. Events of one instant and phase commute: no result may depend on their order. A device that must choose between
+//! 1. Events are handled in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then devices *work*
+//!    on them, then observers *observe*.
+//! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
 //!    simultaneous requests stores them in `Arrive` and chooses in `Work` by a rule of its own (first come, then lowest
 //!    port).
-//! 3. Without shuffling, ties are resolved in the order of scheduling. [`EventQueue::shuffle_ties`] resolves them in a
-//!    hashed order instead. Tests use it to prove point 2.
-//! 4. No event may be scheduled in the past. This is an error of the program and panics.
+//! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
+//!    changes
+//!    this to a hashed order. Tests use the hashed order to check point 2.
+//! 4. No event can be scheduled in the past. An attempt is an error of the program and panics.
 //!
 //! # Time
 //!
 //! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128 bits,
-//! so no clock drifts. No computation of time uses floating point.
+//! so rounding errors do not accumulate. No computation of time uses floating point.
 //!
-//! **Not here:** threads (a simulation runs in one thread; pixels are computed elsewhere), host time.
+//! **Not here:** threads and host time. A simulation runs in one thread, and other crates compute pixels.
 
 mod clock;
 mod context;

@@ -290,7 +290,7 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
-    /// Delay and phase of an event that another event schedules, at most twice.
+    /// Delay and phase of an event that the current event schedules.
     type Follow = (u64, u8);
 
     /// Reference model: a queue that keeps all events in one sorted list.
@@ -316,7 +316,8 @@ mod tests {
     }
 
     proptest! {
-        /// Work scheduled for the current instant takes the separate path through `soon`.
+        /// Compares the queue with a sorted list. Work scheduled for the current instant takes the separate path
+        /// through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

@@ -12,7 +12,7 @@ pub struct Message {
     pub source: NodeId,
     /// Port of the board that receives the message.
     pub destination: NodeId,
-    /// Length in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
+    /// Length of the message in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
     pub words: u32,
     /// Content of the message.
     pub body: Body,
@@ -59,7 +59,7 @@ impl CommandContent {
         Self { words, part }
     }
 
-    /// Appends the words of the commands. Every call appends the same words.
+    /// Appends the words of all commands of the message to `out`. Every call appends the same words.
     pub fn append_words(&self, out: &mut Vec<Word>) {
         self.words.append_words(self.part, out);
     }
@@ -214,13 +214,14 @@ pub enum Lines {
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced frame. Line 0 is the top line of the picture and belongs to the even field.
+/// The two fields of an interlaced frame, by their lines. Line 0 is the top line of the picture and belongs to the even
+/// field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldParity {
-    /// Lines 0, 2, 4, ...
+    /// The field with lines 0, 2, 4, ...
     Even,
-    /// Lines 1, 3, 5, ...
+    /// The field with lines 1, 3, 5, ...
     Odd,
 }
 
@@ -241,7 +242,7 @@ impl FieldParity {
 /// The destination of a region's pixels in a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CopyTarget {
-    /// Port of the frame buffer.
+    /// Ring port of the frame buffer.
     pub frame_buffer: NodeId,
     /// Number of the pixel buffer, 0 or 1.
     pub buffer: u8,

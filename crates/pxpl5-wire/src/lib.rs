@@ -1,17 +1,18 @@
 //! Data on the ring: words, messages, addresses, and the number formats of expressions.
 //!
-//! This crate contains only types. Every board depends on it and no board depends on another board, so this crate
-//! defines everything that two boards share:
+//! This crate contains only types. Every board depends on this crate, and no board depends on another board. The crate
+//! therefore defines everything that two boards share:
 //!
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
 //! - [`Body`]: the content of a message: renderer commands, pixels of a region, or words that firmware defines;
 //! - [`Linear`] and [`Quadratic`]: the expressions that a renderer evaluates at every pixel;
 //! - [`mod@format`]: the fixed-point formats of these expressions;
-//! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: counts of boards and programs;
-//! - [`RegionGrid`]: the division of a screen into regions of at most 128 x 128 pixels.
+//! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: the counts of periods, pictures and views;
+//! - [`RegionGrid`]: the division of a picture into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*. A message has its length and the sequence of its command kinds. Time depends only on these,
-//! because a SIMD array takes the same cycles for all data. The words are computed only when a picture is read.
+//! Bodies are *lazy*: their words are computed only when a picture is read. A message always has its length and the
+//! sequence of its command kinds. Simulated times depend only on these two, because a SIMD array takes the same cycles
+//! for all data.
 //!
 //! **Not modelled:** routing headers and check words. The ring's overhead for each message stands for their cost.
 //!

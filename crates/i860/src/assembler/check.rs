@@ -28,7 +28,7 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// A rule that some working programs break, so that the assembler only warns.
+/// A rule that some working programs break. The assembler only warns if a program breaks such a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
     /// Rule: a `d.` instruction has an address that is a multiple of 8.
@@ -44,7 +44,7 @@ impl Rule {
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
-    /// Returns the name that turns the warnings of this rule off.
+    /// Returns the name that turns off the warnings of this rule.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, rule)| *rule == self).map_or("", |(name, _)| name)

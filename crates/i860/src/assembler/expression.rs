@@ -1,4 +1,5 @@
-//! Constant expressions: numbers, symbols, `+ - * / % << >> & | ^ ~ ( )`, and the halves `h%`, `l%`, `ha%`.
+//! Constant expressions: numbers, symbols, the operators `+ - * / % << >> & | ^ ~ ( )`, and the halves `h%`, `l%`,
+//! `ha%` of a constant.
 
 use std::collections::BTreeMap;
 

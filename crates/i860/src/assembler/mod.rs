@@ -34,14 +34,14 @@ use operand::Filler;
 use source::{Line, is_name, split_label};
 use std::collections::BTreeMap;
 
-/// An assembled program with its labels, ready to be loaded into memory.
+/// An assembled program with its labels and source lines, ready to be loaded into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// Memory address of the first byte of the program.
     pub base: u32,
     /// All bytes of the program from address `base` on, including the bytes of gaps.
     pub bytes: Vec<u8>,
-    /// Addresses of labels and values of constants, by name.
+    /// Addresses of labels and values of constants, for each name.
     pub symbols: BTreeMap<String, u32>,
     /// Names of labels with their addresses, sorted by address.
     pub labels: Vec<(String, u32)>,
@@ -59,7 +59,7 @@ pub struct Program {
 pub struct Data {
     /// Memory address of the first byte of the data block.
     pub address: u32,
-    /// Number of bytes.
+    /// Size of the data block in bytes.
     pub bytes: u32,
     /// Line number of the directive in its source.
     pub line: usize,
@@ -69,7 +69,7 @@ pub struct Data {
 /// Type of the values of a data directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataKind {
-    /// Integers of this many bytes each: `.byte`, `.short`, `.long`.
+    /// Integers of `.byte`, `.short` or `.long`. The field is the size of one integer in bytes.
     Integers(u32),
     /// Single-precision numbers of `.float`.
     Singles,

@@ -17,7 +17,7 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// Returns true if the operation goes into the floating-point half of a pair.
+    /// Returns true if the operation is executed in the floating-point half of a pair.
     pub(super) fn is_floating(self) -> bool {
         matches!(self, Unit::Adder | Unit::Multiplier { .. } | Unit::Graphics | Unit::Seed)
     }

@@ -1,10 +1,11 @@
-//! A scheduler for straight-line code without registers or order, which it places in dual-instruction mode.
+//! A scheduler that turns straight-line code into pairs for dual-instruction mode. The source of the code names no
+//! registers and gives no order.
 //!
-//! A *linear stretch* of an assembler source lies between `.linear` and `.endlinear`. Each of its lines computes a
-//! value from other values, by the name of an operation without its pipe. [`schedule`] replaces the stretch by pairs of
-//! a floating-point and a core instruction. The scheduler chooses the order, fills and drains the pipes of adder and
-//! multiplier, and assigns registers. The operations and their operands stay as written, so results do not depend on
-//! the order.
+//! A *linear stretch* is the part of an assembler source between `.linear` and `.endlinear`. Each line of a stretch
+//! computes a value from other values. The line names an operation, but not the pipe that executes it. [`schedule`]
+//! replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the order, fills and
+//! drains the pipes of adder and multiplier, and assigns registers. The operations and their operands stay as written,
+//! so results do not depend on the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -23,31 +24,34 @@
 //! |---|---|
 //! | `add` `sub` `.ss .sd .dd`, `mov` `.sd .ds` | adder, pipelined |
 //! | `mul` `.ss .sd .dd` | multiplier, pipelined |
-//! | `rcp` `.ss .dd` | seed of a reciprocal; the multiplier's pipe is drained before it |
+//! | `rcp` `.ss .dd` | first approximation of a reciprocal; the multiplier's pipe is drained before it |
 //! | `isub.ss` `iadd.ss` `zmin.dd` | graphics unit (fisub, fiadd, fzchkl) |
 //! | `fld.l .d .q`, `ld.l`, `fst.l .d`, `st.l`, `ixfr` | core |
 //! | `adds subs and andnot or xor shl shr shra orh` | core; the first source may be a constant |
 //! | `prefetch` | core: a load whose data is not used; no other memory access is placed while it is under way |
 //!
 //! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change. A `.pool` line of
-//! the source lists the integer registers that [`schedule`] may use: `.pool r4 r5 r6`. Loads and stores are independent
-//! of each other unless a store is marked, `@mark st.l ..`, and a load says `!mark` at its end. A stretch begins and
-//! ends in dual-instruction mode.
+//! the source lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. Loads and stores can be placed
+//! in any order. To make a load wait for a store, write a label before the store, `@label st.l ..`, and `!label` at the
+//! end of the load. A stretch begins and ends in dual-instruction mode.
 //!
 //! # Method
 //!
-//! The method is list scheduling, clock by clock. The scheduler looks at a *window* of lines from the first one that
-//! has not issued. Of the operations that can issue, it takes the one with the longest path to the end.
+//! The method is list scheduling, clock by clock. In each clock the scheduler looks at a *window*: a number of lines
+//! that begins with the first line not issued yet. Of the operations that can be issued, the scheduler takes the one
+//! with the longest path to the end.
 //!
-//! The first line may take the last free registers. Later lines leave a *reserve* of registers, and more for each 64
-//! lines that they are ahead (*slope*), so that no schedule runs out of registers.
+//! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
+//! The reserve grows for each 64 lines of distance from the first line (*slope*). No schedule thus runs out of
+//! registers.
 //!
-//! An empty operation pushes a pipe (a *drain*) if no operation can issue, or if a value in the pipe is more urgent by
-//! the *eagerness*. An operation that can be a dual operation also pushes the other pipe, if no result is lost.
+//! An operation without operands pushes a pipe (a *drain*) in two cases: no operation can be issued, or a value in the
+//! pipe is more urgent than the best operation by more than the *eagerness*. An operation that can be a dual operation
+//! also pushes the other pipe, if no result is lost.
 //!
-//! The rules of issue are the rows of the freeze table, so code in the caches runs without freezes. A *shake* other
-//! than 0 changes the priorities a little. Schedules of the same text then differ by some per cent, and a search can
-//! try many and keep the shortest.
+//! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes if it hits the caches.
+//! A *shake* other than 0 changes the priorities a little. Schedules of the same text then differ by some per cent. A
+//! search can try many values and keep the shortest schedule.
 
 mod machine;
 mod parse;
