@@ -51,7 +51,7 @@ pub enum Schedule {
     /// instruction cache.
     ///
     /// Most of the source is linear code: single operations in order, without a choice of clocks and pipelines. The
-    /// i860's assembler does not support it. This project's assembler first schedules the linear code.
+    /// i860's assembler does not support linear code. This project's assembler first schedules the linear code.
     Dual,
 }
 
@@ -110,8 +110,8 @@ pub struct Kernel {
     pub keeps_boxes: bool,
     /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
     ///
-    /// Register 19 then holds the address for the right eye's commands, and register 21 the address of its parameter
-    /// block. Requires [`Kernel::can_serve_both_eyes`].
+    /// Register 19 then holds the address for the right eye's commands, and register 21 the address of the right eye's
+    /// parameter block. Requires [`Kernel::can_serve_both_eyes`].
     pub both_eyes: bool,
 }
 
@@ -672,7 +672,7 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
 /// Returns a strip's vertex in the format of the display list, with a normal of unit length.
 ///
 /// `begins` is true for the first two vertices of a strip, which make no triangle. The corners of a triangle are the
-/// second last vertex, the last vertex and this vertex. The order is the same for both windings.
+/// two vertices before this one, in their order, and this vertex. The order is the same for both windings.
 #[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);

@@ -37,7 +37,8 @@ pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 /// Position, in words of the parameter block, of the blank command into which the kernel writes operands.
 const TEMPLATE: usize = 110;
 
-/// Position of the picture's size in the parameter block, in words. It follows the space for the longest blank command.
+/// Position of the picture's size in the parameter block, in words. This position follows the space for the longest
+/// blank command.
 const SIZE: usize = TEMPLATE + 53;
 
 /// Number of words at the start of the parameter block that depend on a view and a light.

@@ -102,8 +102,8 @@ fn frame_line(viewport: &Viewport, row: u32) -> i32 {
 }
 
 impl ScreenSphere {
-    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. They can extend
-    /// beyond the picture.
+    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. These pixels can
+    /// extend beyond the picture.
     fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
         let grid = viewport.grid();
         let corners = self.regions.iter().map(|r| grid.rectangle(r));

@@ -51,8 +51,8 @@ pub trait PixelArray {
     /// Overwrites the Enable register of all pixels.
     fn set_enable(&mut self, plane: &Plane);
 
-    /// Returns the colours of the selected context's upper left `width` x `height` pixels (at most 128 x 128). They are
-    /// 0x00RRGGBB, row by row.
+    /// Returns the colours of the selected context's upper left `width` x `height` pixels (at most 128 x 128). The
+    /// colours have the format 0x00RRGGBB and are ordered row by row.
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
     /// Sets pixel memory, Enable, backing store, selected region and the count of faults to zero.
@@ -97,7 +97,7 @@ pub enum FaultKind {
     /// The words encode no instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A field extends beyond the end of pixel memory. Its address is relative to the selected context.
+    /// A field extends beyond the end of pixel memory. The field's address is relative to the selected context.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
         /// The field as encoded in the instruction: address relative to the context's first bit, and width in bits.

@@ -411,8 +411,8 @@ impl Renderer {
         self.drawn.drain(..)
     }
 
-    /// Returns pixel memory as it is after all received command lists. Of each region context, only the lists since its
-    /// last clear count.
+    /// Returns pixel memory as it is after all received command lists. In each region context, lists before the last
+    /// clear have no effect.
     ///
     /// Returns `None` if no context has received lists that change pixels, for example when pixels are off.
     #[must_use]

@@ -6,7 +6,8 @@ use pxpl5_wire::CommandRun;
 /// Largest number of region contexts in pixel memory.
 pub const MAX_CONTEXTS: usize = 8;
 
-/// Returns true if a command list can change pixels. It then contains other commands than region selections and copies.
+/// Returns true if a command list can change pixels. Such a list contains a command that neither selects nor copies a
+/// region.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))

@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that enters the room that the first command frees at its start. Words are counted from 0
-    /// since the start of the run.
+    /// Index of the first word for which the first command makes room in the FIFO when the command starts. Words are
+    /// counted from 0 since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -139,15 +139,16 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Greatest execution time of the commands that select a region for a copy. Commands that take longer after a wait draw
-/// the region. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Greatest execution time of the commands that select a region for a copy. After a wait, commands with a longer
+/// execution time count as commands that draw the region. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// Time from which the controller was free for the commands before this one. `finished_at` is the end of the last
-    /// of them. If the controller waited for the selection of the region to copy, this selection does not count.
+    /// Time from which the controller was free for the commands before this one. `finished_at` is the end time of the
+    /// last of these commands. If the controller waited for the selection of the region to copy, this selection does
+    /// not count.
     pub(crate) begun_at: Time,
     pub(crate) finished_at: Time,
     /// Start time of the blocking command.

@@ -281,8 +281,8 @@ pub enum ArrayInstruction {
         /// extended by its sign if the field is signed, otherwise by zeros.
         value: u32,
     },
-    /// Computes destination := value. A wide destination extends the value by its sign if the destination is signed,
-    /// otherwise by zeros.
+    /// Computes destination := value. For a destination of more than 32 bits, the value is extended by its sign if the
+    /// destination is signed, otherwise by zeros.
     LoadConstant {
         /// Field that receives the constant.
         destination: Operand,

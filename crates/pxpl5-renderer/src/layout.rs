@@ -95,7 +95,7 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 impl Layout {
     /// Returns the layout of Rendering Control with Phong shading: one region.
     ///
-    /// It has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
+    /// The layout has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)

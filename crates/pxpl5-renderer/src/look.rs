@@ -24,7 +24,7 @@ pub struct RendererSnapshot {
     pub busy: Span,
 }
 
-/// Received command lists whose effects are visible in pixel memory, or will be.
+/// Received command lists whose effects are visible in pixel memory now or later.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 

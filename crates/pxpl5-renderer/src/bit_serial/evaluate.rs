@@ -1,4 +1,5 @@
-//! Instructions with an expression. As the bits arrive from the evaluator, they change Enable or pixel memory.
+//! Instructions with an expression. As the expression's bits arrive from the evaluator, these bits change Enable or
+//! pixel memory.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};

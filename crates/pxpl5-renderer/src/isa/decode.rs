@@ -45,7 +45,8 @@ pub enum DecodeErrorKind {
         /// Required width in bits. For expressions and quotients it is the largest allowed width.
         expected: u32,
     },
-    /// The signedness of the operands is not allowed: they must be unsigned, or must both be signed or both unsigned.
+    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Others need two operands
+    /// of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
     /// The number of a backing store block is too large.

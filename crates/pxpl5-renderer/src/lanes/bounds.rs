@@ -286,7 +286,7 @@ mod tests {
         Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
     }
 
-    /// Checks that all inside pixels of random triangles are within the bounds, and returns their number.
+    /// Checks that all inside pixels of random triangles are within the bounds, and returns the number of these pixels.
     fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;

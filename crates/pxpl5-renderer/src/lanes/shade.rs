@@ -21,7 +21,7 @@ pub(super) struct ShadeAll<'a> {
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Enable register, which is written. `None` if no later instruction reads Enable.
+    /// Enable register, into which the covered pixels are written. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 

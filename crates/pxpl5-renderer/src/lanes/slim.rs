@@ -135,8 +135,8 @@ fn moved(places: &PerTriangle<i32>, by: i32) -> PerTriangle<i32> {
     all
 }
 
-/// Returns the values of triangle `i`'s expression for a vector. Its first pixel is `down` rows below the pixel at
-/// which the value is `first`.
+/// Returns the values of triangle `i`'s expression for a vector. The first pixel of the vector is `down` rows below the
+/// pixel at which the value is `first`.
 #[inline(always)]
 fn walk<V: SimdVector>(e: &LinearLanes, first: i32, i: usize, down: usize) -> Walk<V> {
     Walk::fours(first.wrapping_add(e.b[i].wrapping_mul(down as i32)), e.a[i], e.b[i])

@@ -228,7 +228,7 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
     ///
-    /// It draws two rows at a time. A mispredicted branch costs more time than a row outside the triangle.
+    /// The function draws two rows at a time. A mispredicted branch costs more time than a row outside the triangle.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
