@@ -205,8 +205,8 @@ fn errors_on_sine_waves_are_the_closed_forms() {
 
 #[test]
 fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
-    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity filter 2.7 and
-    // 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
+    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity
+    // filter 2.7 and 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
     let tracker = model(TrackerConfig::optical_ceiling());
     let mean = |config: fn(&dyn Motion, &TrackerModel, u64) -> PredictorConfig, ms: u64| {
         let each = (0..4).map(|seed| {

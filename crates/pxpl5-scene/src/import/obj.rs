@@ -38,8 +38,8 @@ struct Reader<'a> {
     model: Model,
 }
 
-/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths, because
-/// a growing list is copied.
+/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths,
+/// because a growing list is copied.
 #[derive(Default)]
 struct Counts {
     points: usize,

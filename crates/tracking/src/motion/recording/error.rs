@@ -6,7 +6,7 @@ use super::{FARTHEST_M, FASTEST, LATEST_S};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The recording holds no samples.
+    /// The recording contains no samples.
     #[error("expected at least one sample, found none")]
     Empty,
     /// The text cannot be read: input or output failed, or the text is not UTF-8.
