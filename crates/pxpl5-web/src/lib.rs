@@ -2,8 +2,7 @@
 //! wasm-bindgen, and a web page shows the state between steps.
 //!
 //! ```text
-//! address  #pipeline=slats&scene=mig&...  --> settings --> ExperimentFile --> Stepper     (this crate, compiled to
-//! wasm)
+//!   address  #pipeline=slats&scene=mig&...  --> settings --> ExperimentFile --> Stepper     (this crate, compiled to wasm)
 //!   page/    run, pause, step, slower  ----------> run_for, step_*   |
 //!            eyes, ring, boards  <---- bytes and JSON ---------------+
 //! ```
