@@ -83,7 +83,7 @@ fn shade(scene: &Scene, normal: Vec3, colour: [u8; 3]) -> Vec3 {
     Vec3::from(colour.map(f32::from)) * bright
 }
 
-/// Position in the picture, pixels to the right and down, and 1 / distance.
+/// Returns the position of a point in the picture (pixels to the right and down), and 1 / distance.
 fn screen(view: &View, eye: Vec3) -> Vec3 {
     let clip = view.projection * eye.extend(1.0);
     let x = (clip.x / clip.w + 1.0) * 0.5 * WIDTH as f32;
@@ -129,7 +129,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a sphere as if seen from afar: a disc with the normals of a sphere.
+    /// Draws a sphere without perspective distortion, as a disc with the normals of a sphere.
     fn sphere(&mut self, scene: &Scene, view: &View, sphere: pxpl5_scene::Sphere) {
         let centre = view.world_to_eye.transform_point3(sphere.centre);
         if centre.z > -sphere.radius {

@@ -53,7 +53,7 @@ pub const MEMORY_TIMES_FILE: u64 = 7;
 /// cannot exhaust the memory, so they need no strict limit. Assumed, any value.
 pub const MEMORY_FLOOR_BYTES: u64 = 4 << 20;
 
-/// Colour of imported surfaces without a colour of their own: 8-bit red, green, blue. Assumed, any value.
+/// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed, any value.
 pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 
 /// Largest N of the scenes `full-screen:N`, `typical:N` and `sphere:N`. Assumed, 12 (published in TR94) or more. The

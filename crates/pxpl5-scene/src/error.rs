@@ -31,7 +31,7 @@ pub enum LoadError {
     /// The operating system reports an error: the file is missing or unreadable, or the disk failed.
     #[error("{file}: expected a readable file, found: {source}")]
     Io {
-        /// Path of the file, as it was given.
+        /// Path of the model file, as the caller gave it.
         file: String,
         /// Error of the operating system.
         source: io::Error,
@@ -39,7 +39,7 @@ pub enum LoadError {
     /// The path leads to a directory, a device or a pipe instead of a file.
     #[error("{file}: expected a regular file, found {found}")]
     NotAFile {
-        /// Path of the file, as it was given.
+        /// Path of the model file, as the caller gave it.
         file: String,
         /// Description of the object at the path: "a directory" or "a device or a pipe".
         found: &'static str,
@@ -47,7 +47,7 @@ pub enum LoadError {
     /// The file's extension is unknown, so no importer reads the file.
     #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
     UnknownFormat {
-        /// Path of the file, as it was given.
+        /// Path of the model file, as the caller gave it.
         file: String,
         /// The extension of the path, or an empty text if the path has no extension.
         found: String,
@@ -55,7 +55,7 @@ pub enum LoadError {
     /// The file is larger than [`crate::config::MAX_FILE_BYTES`].
     #[error("{file}: expected at most {expected} bytes, found more")]
     TooLarge {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Largest allowed size of a model file, in bytes.
         expected: u64,
@@ -64,7 +64,7 @@ pub enum LoadError {
     /// if a file refers to the same corners very often.
     #[error("{file}: expected a model that takes at most {expected} bytes, as its size allows, found {found}")]
     TooMuchMemory {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Greatest memory that the model may take, in bytes.
         expected: u64,
@@ -74,13 +74,13 @@ pub enum LoadError {
     /// The file is empty or contains only white space.
     #[error("{file}: expected a model, found an empty file")]
     Empty {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
     },
     /// A part of the file that must be text contains a byte that is not UTF-8.
     #[error("{file}: {at}: expected UTF-8 text, found byte {found:#04x}")]
     NotText {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
@@ -90,7 +90,7 @@ pub enum LoadError {
     /// The file breaks the rules of its format.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Syntax {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
@@ -103,7 +103,7 @@ pub enum LoadError {
     /// error too.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Truncated {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
@@ -115,13 +115,13 @@ pub enum LoadError {
     /// A corner of a face refers to a vertex or a normal that does not exist.
     #[error("{file}: {at}: expected an index of one of {expected} {what}, found {found}")]
     Index {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
         /// Kind of the indexed items: "vertices" or "normals".
         what: &'static str,
-        /// Number of such items in the file. A valid index refers to one of them.
+        /// Number of vertices or normals that the file has. A valid index refers to one of them.
         expected: usize,
         /// The index as it is written in the file.
         found: i64,
@@ -129,7 +129,7 @@ pub enum LoadError {
     /// A coordinate is NaN, infinite, or larger than [`crate::config::MAX_COORDINATE`] in absolute value.
     #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]
     Coordinate {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Position of the error in the file.
         at: FilePlace,
@@ -141,7 +141,7 @@ pub enum LoadError {
     /// The file is well formed but contains nothing to draw.
     #[error("{file}: expected at least one {expected}, found none")]
     NothingToDraw {
-        /// Name of the file, as it was given.
+        /// Name of the model file, as the caller gave it.
         file: String,
         /// Kind of content that is missing: "triangle", "triangle with an area" or "atom".
         expected: &'static str,

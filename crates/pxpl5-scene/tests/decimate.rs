@@ -10,7 +10,7 @@ fn scene(name: &str) -> Scene {
     builtin(name).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the positions of the corners as bits, so that vertices at one position are one point.
+/// Returns the positions of the corners as bits, so that vertices at the same position compare as equal.
 fn places(scene: &Scene, triangle: &[u32; 3]) -> [[u32; 3]; 3] {
     triangle.map(|corner| scene.vertices()[corner as usize].position.to_array().map(|x| (x + 0.0).to_bits()))
 }
@@ -68,7 +68,8 @@ fn a_head_of_fewer_triangles_is_a_closed_head_of_the_same_size() {
     }
 }
 
-/// Every octant of the box must keep triangles. The first N triangles of the head would be only its crown.
+/// Every octant of the bounding box must keep triangles. Keeping only the first N triangles of the head would leave
+/// only its crown.
 #[test]
 fn no_part_of_the_head_is_left_out() {
     let few = scene("head").decimated(200).expect("it has more");

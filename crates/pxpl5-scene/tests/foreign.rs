@@ -74,7 +74,7 @@ fn faces_may_stand_before_the_points_of_an_obj_file() {
     assert_eq!(obj(format!("{faces}{points}")), obj(TETRAHEDRON));
 }
 
-/// Header and rows of a tetrahedron's elements: vertices, faces.
+/// Header and rows of the two elements of a tetrahedron: vertices, then faces.
 const ELEMENTS: [[&str; 2]; 2] = [
     ["element vertex 4\nproperty float x\nproperty float y\nproperty float z\n", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"],
     ["element face 4\nproperty list uchar int vertex_indices\n", "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"],
@@ -219,7 +219,7 @@ fn assert_covers(points: &[(f64, f64)], scene: &Scene) {
     assert!(areas.iter().all(|area| area.z * whole.signum() > -1e-6 * whole.abs()), "{points:?}: {areas:?}");
 }
 
-/// A dart: its notch is at the third corner.
+/// A concave polygon of four corners, with its notch at the third corner.
 const DART: [(f64, f64); 4] = [(0.0, 2.0), (-2.0, -2.0), (0.0, -1.0), (2.0, -2.0)];
 
 #[test]
@@ -315,7 +315,7 @@ proptest! {
         assert_covers(&points, &obj(polygon_obj(&points)));
     }
 
-    /// No polygon of a file, however it crosses itself, makes the reader panic.
+    /// A polygon that crosses itself never makes the reader panic.
     #[test]
     fn polygons_that_cross_themselves_are_read(points in prop::collection::vec((-3..4_i32, -3..4_i32), 3..40)) {
         let points: Vec<(f64, f64)> = points.iter().map(|&(x, y)| (x.into(), y.into())).collect();

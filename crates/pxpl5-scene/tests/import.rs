@@ -18,7 +18,8 @@ fn ply(text: impl AsRef<[u8]>) -> Scene {
     read(Format::Ply, text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The square with corners (+-1, +-1, 0) fitted: centre 0, farthest corner at the radius.
+/// Returns the corners of the square (+-1, +-1, 0) after import: the centre is the origin, and the corners lie at the
+/// radius of imported models.
 fn fitted_square() -> [Vec3; 4] {
     let half = IMPORT_RADIUS_M as f32 / 2.0_f32.sqrt();
     [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vec3::new(x, y, 0.0))
@@ -91,7 +92,7 @@ const SQUARE_HEADER: &str = "element vertex 4\nproperty float x\nproperty float 
     property uchar red\nproperty uchar green\nproperty uchar blue\n\
     element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 
-/// The square as a binary file; `word` writes 4 bytes in the file's order.
+/// Returns the square as a binary PLY file. `word` returns the 4 bytes of a number in the byte order of the file.
 fn binary_square(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
     let mut file = format!("ply\nformat {encoding} 1.0\n{SQUARE_HEADER}").into_bytes();
     for (x, y) in [(4.0_f32, -1.0_f32), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0)] {
@@ -129,7 +130,7 @@ fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood
     assert_eq!((scene.vertices()[1].normal, scene.vertices()[1].colour), (Vec3::Y, [255, 128, 0]));
 }
 
-/// A scene as an ASCII PLY file, with all the digits of its numbers.
+/// Returns a scene as an ASCII PLY file that has all digits of every number.
 fn written(scene: &Scene) -> String {
     let vertices = scene.vertices();
     let triangles = scene.triangles();

@@ -17,7 +17,7 @@ struct Counting;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
-/// A lock that lets one test run at a time, because the memory of other tests would be counted too.
+/// A lock that lets only one test run at a time. The memory of parallel tests would be counted too.
 static ALONE: Mutex<()> = Mutex::new(());
 
 fn alone() -> MutexGuard<'static, ()> {

@@ -5,7 +5,7 @@ use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
 use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Pose, Scene, Sway, builtin};
 
 const SECOND: u64 = 1_000_000_000_000;
-/// Time between the two poses that give a speed, ps. Ten speeds per second resolve every sine below 2 Hz.
+/// Time between the two poses from which a speed is computed, ps. Ten speeds per second resolve every sine below 2 Hz.
 const STEP: u64 = SECOND / 100;
 
 fn forward(pose: &Pose) -> DVec3 {
@@ -152,7 +152,7 @@ fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_h
     }
 }
 
-/// Returns the fraction of the view that the box around the model's vertices covers.
+/// Returns the fraction of the picture that the bounding rectangle of the model's vertices covers.
 fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
     let view = hmd.mono(&scene.motion().pose(time_ps));

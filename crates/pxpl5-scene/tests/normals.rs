@@ -27,7 +27,8 @@ fn assert_direction(scene: &Scene, expected: DVec3) {
     }
 }
 
-/// Divided by its largest component, then by its length; a triangle's own normal for one without length.
+/// Returns the expected unit normal: the given vector divided by its largest component, then by its length. For a
+/// vector without length it is the triangle's own normal.
 fn direction(text: &str) -> DVec3 {
     let numbers: Vec<f64> = text.split(' ').map(|word| word.parse().expect("a number")).collect();
     let v = DVec3::from_slice(&numbers);

@@ -1,4 +1,4 @@
-//! Views against values computed by hand.
+//! The matrices of the eyes agree with values computed by hand.
 
 use glam::{DQuat, DVec3, Mat4, Vec3, Vec4};
 use pxpl5_scene::{EyePoint, Hmd, HmdConfig, Pose, View};

@@ -9,7 +9,7 @@ use tracking::predict::{PredictorConfig, PredictorKind, prediction_errors, tune}
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// Seed of the noise and the motion of the evaluation.
+/// Seed of the noise and of the motion with which predictors are evaluated.
 const JUDGED: u64 = 2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,4 +1,4 @@
-//! The rig measures from outside the latencies that were put in.
+//! The pendulum rig measures exactly the latencies that the test has simulated.
 
 use tracking::motion::Motion;
 use tracking::rig::{
@@ -7,7 +7,7 @@ use tracking::rig::{
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel};
 
-/// A pipeline of 57 ms (Rendering Control) whose frames wait for the next field.
+/// Returns the instant at which a frame is shown: 57 ms after its start (Rendering Control), at the next field.
 fn pipeline(start_ps: u64) -> u64 {
     (start_ps + 57 * PS_PER_MS).div_ceil(NTSC_FIELD_PS) * NTSC_FIELD_PS
 }
@@ -17,12 +17,12 @@ fn noiseless(config: TrackerConfig) -> TrackerConfig {
     noiseless.without_systematic_errors()
 }
 
-/// Time from the retrace to the photodiode's line, without blanking.
+/// Returns the time from the retrace until the beam passes the photodiode's scanline, without blanking.
 fn place_ps(rig: &PendulumRig) -> u64 {
     ntsc_lines_ps(rig.photodiode_line)
 }
 
-/// Returns the passes by the time stamps of a system whose time stamps are correct.
+/// Returns the pendulum's passes as measured by correct time stamps.
 fn inside(rig: &PendulumRig, tracker: &TrackerModel, passes: usize) -> Vec<InsidePass> {
     let sightings = rig.sightings(tracker, 1, passes).unwrap();
     let pass = |sighting: LowPointReport| {
@@ -165,8 +165,8 @@ fn a_frame_whose_light_never_comes_is_an_error() {
     assert_eq!(error, RigError::NoLight { expected: 3, found: 2 });
 }
 
-/// Each side detects errors of the other: the two measurements disagree if they differ by more than the bounds, 8.3 and
-/// 7.6 ms here.
+/// Each measurement detects errors of the other. They disagree if they differ by more than the limits, 8.3 and 7.6 ms
+/// here.
 #[test]
 fn an_error_of_one_side_is_found_by_the_other() {
     let rig = PendulumRig::assumed();

@@ -26,7 +26,7 @@ fn report(at_ps: u64, pose: Pose) -> TrackerReport {
     TrackerReport { solution: at_ps, measured_ps: at_ps, position_measured_ps: at_ps, arrives_ps: at_ps, pose }
 }
 
-/// Mean angular errors, averaged over four ten-minute traces.
+/// Returns the mean angular error for each prediction interval, averaged over four motions of ten minutes.
 fn mean_degrees(kind: PredictorKind, tracker: fn() -> TrackerConfig) -> [f64; 4] {
     let traces: Vec<_> = (0..4).map(|seed| errors(kind, tracker(), seed, (1, 600))).collect();
     std::array::from_fn(|i| traces.iter().map(|t| t[i].mean_deg).sum::<f64>() / 4.0)

@@ -1,7 +1,6 @@
-//! The synthetic generator has the published statistics of recorded headset use, measured as one would measure a
-//! trace: 17 minutes at 120 Hz, for several seeds. Over seeds, 17-minute figures scatter by 3 % (mean), 4 % (95th) and
-//! 5 % (99.9th percentile, about a second of motion), hence the tolerances: three times that for one trace, and a
-//! third of it for the mean of sixteen.
+//! The random head motion has the published statistics of recorded headset use, measured over 17 minutes at 120 Hz for
+//! several seeds. Over seeds, the mean speed scatters by 3 %, its 95th percentile by 4 % and its 99.9th percentile by 5
+//! %. The tolerance is three times this scatter for one seed, and a third of it for the mean of sixteen seeds.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +15,7 @@ fn at_120_hz(seconds: u64) -> impl Iterator<Item = u64> {
     (0..seconds * 120).map(|i| i * PS_PER_S / 120)
 }
 
-/// Mean, 95th and 99.9th percentile of the angular speed (deg/s) and mean speed (m/s).
+/// Returns mean, 95th and 99.9th percentile of the angular speed (deg/s), and the mean translation speed (m/s).
 fn speeds(seed: u64) -> [f64; 4] {
     let motion = Synthetic::recorded_use(seed);
     let mut turns: Vec<f64> = at_120_hz(TRACE_S).map(|t| motion.angular_velocity(t).length().to_degrees()).collect();
@@ -41,8 +40,8 @@ fn speeds_of_17_minutes_are_those_of_recorded_use() {
     }
 }
 
-/// Part of the energy of the yaw of a 17-minute trace at and below `hertz`, by a discrete Fourier transform of `rate`
-/// samples a second.
+/// Returns the fraction of the energy of yaw at or below the frequency `hertz`, over 17 minutes. It is computed by a
+/// discrete Fourier transform of `rate` samples per second.
 fn yaw_energy_below(seed: u64, hertz: f64, rate: usize) -> f64 {
     let motion = Synthetic::recorded_use(seed);
     let n = TRACE_S as usize * rate;

@@ -1,4 +1,4 @@
-//! Times of measurement, times of arrival and errors of reports.
+//! Tests of tracker models: measurement times, arrival times and errors of reports.
 
 use glam::DVec3;
 use tracking::Pose;
@@ -61,7 +61,7 @@ fn apparent_latency_ms(gain: f64) -> f64 {
     last.pose.angle_deg(&now) / deg_per_s * 1e3
 }
 
-/// The manual prints 4.2 and 162 ms. The closed form is 3.75 ms + dt (1 - a) / a with dt = 1/120 s.
+/// The manual prints 4.2 and 162 ms. The formula is 3.75 ms + dt (1 - a) / a, with dt = 1/120 s and the filter gain a.
 #[test]
 fn the_fastraks_filter_has_the_latencies_of_the_manual() {
     for (gain, printed_ms, half_digit_ms) in [(0.95, 4.2, 0.05), (0.05, 162.0, 0.5)] {

@@ -1,5 +1,5 @@
-//! Tuned filters: no worse than no prediction on a still head, near the best filter on a moving head, and equal to the
-//! closed forms on sine waves.
+//! Tuned prediction filters. On a still head they are no worse than no prediction, on a moving head they are near the
+//! best filter, and on sine waves they agree with exact formulas.
 
 use std::f64::consts::{PI, TAU};
 
@@ -122,8 +122,8 @@ fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune()
     assert!(tune(&motion, &tracker, 80 * PS_PER_MS, &bad, 1).is_err());
 }
 
-/// Five seconds of a swinging head, recorded 120 times per second. Tuning learns nothing from the time after the last
-/// sample, whatever the end of the recording.
+/// A head swings for five seconds and is recorded 120 times per second. The tuning ignores the time after the last
+/// sample, for every behaviour at the end of the recording.
 #[test]
 fn a_recording_that_holds_its_end_teaches_what_moved_and_not_its_standing_still() {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
@@ -154,8 +154,9 @@ fn turn(angle: f64) -> Complex {
     (angle.cos(), angle.sin())
 }
 
-/// Returns the gain of a prediction by `p` seconds for a sine wave of `w` rad/s, with differences of reports `h`
-/// seconds apart. It follows from the Newton polynomials, with z = e^(-jwh) for a report's delay.
+/// Returns the complex factor by which a prediction over `p` seconds multiplies a sine wave of `w` rad/s. The
+/// prediction uses differences of reports `h` seconds apart. The factor follows from the Newton polynomials, with z =
+/// e^(-jwh) for the delay of one report.
 fn of_differences(order: u32, w: f64, h: f64, p: f64) -> Complex {
     let z = turn(-w * h);
     let slope = ((1.0 - z.0) / h, -z.1 / h);
@@ -204,8 +205,8 @@ fn errors_on_sine_waves_are_the_closed_forms() {
 
 #[test]
 fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
-    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity filter 2.7 and
-    // 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
+    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity
+    // filter 2.7 and 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
     let tracker = model(TrackerConfig::optical_ceiling());
     let mean = |config: fn(&dyn Motion, &TrackerModel, u64) -> PredictorConfig, ms: u64| {
         let each = (0..4).map(|seed| {

@@ -38,8 +38,8 @@ struct Reader<'a> {
     model: Model,
 }
 
-/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths, because
-/// a growing list is copied.
+/// Numbers of points, normals and triangles in a file. The lists of a model are allocated with their final lengths,
+/// because a growing list is copied.
 #[derive(Default)]
 struct Counts {
     points: usize,
@@ -51,8 +51,8 @@ struct Counts {
 }
 
 impl Counts {
-    /// Counts the points, normals and faces of a file. Of each line, only the first word and the numbers of colours are
-    /// examined.
+    /// Counts the points, normals and triangles of a file. Of each line, only the first word, the number of words and
+    /// the numbers of a colour are read.
     fn of(source: &Source<'_>) -> Self {
         let mut counts = Self::default();
         for (_, line) in statements(source) {

@@ -74,8 +74,8 @@ struct Rows<'a> {
     coloured: Vertices,
 }
 
-/// Greatest length of a list in a file without vertices. Each vertex allows `LIST_PER_VERTEX` more items. Assumed: strips
-/// of single triangles take 8 corners for each vertex of a closed surface.
+/// Greatest length of a list in a file without vertices. Each vertex allows `LIST_PER_VERTEX` more items. Assumed:
+/// strips of single triangles take 8 corners for each vertex of a closed surface.
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 

@@ -64,8 +64,8 @@ impl Pendulum {
         2.0 * self.modulus * self.natural_rad_per_s * self.arm_m
     }
 
-    /// Returns the instant (ps) at which the pendulum passes its lowest point for the n-th time, counted from 0. This
-    /// is after 2 n + 1 quarters of the period.
+    /// Returns the instant (ps) of pass `n` of the pendulum through its lowest point, counted from 0. This pass comes 2
+    /// n + 1 quarters of a period after the start.
     pub fn low_point_ps(&self, n: u64) -> u64 {
         nearest_ps((2.0 * n as f64 + 1.0) * self.period_s / 4.0)
     }

@@ -2,8 +2,8 @@ use glam::{DQuat, DVec3};
 
 use crate::rotation;
 
-/// A prediction filter of one quantity, either position or orientation. The times of its updates must rise, which the
-/// check of the reports ensures.
+/// A prediction filter of one quantity, either position or orientation. The filter must receive measured values in
+/// order of time.
 pub(super) trait Channel<T>: Send {
     /// Discards all past values and starts again from this value.
     fn restart(&mut self, t_ps: u64, value: T);

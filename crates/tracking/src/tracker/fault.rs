@@ -17,22 +17,22 @@ pub enum TrackerFault {
     },
     /// The tracker makes no measurements from `from_ps` until before `to_ps`.
     Dropout {
-        /// First instant without measurements, ps.
+        /// First instant of the interval without measurements, ps.
         from_ps: u64,
-        /// First instant with measurements again, ps.
+        /// First instant after the interval without measurements, ps.
         to_ps: u64,
     },
-    /// Each measurement is lost with this probability.
+    /// Some measurements, chosen at random, are lost.
     RandomDropout {
         /// Probability that a measurement is lost, 0 to 0.99.
         probability: f64,
     },
-    /// Each report consists of NaN with this probability.
+    /// Some reports, chosen at random, contain NaN instead of a pose.
     NotANumber {
-        /// Probability that a report is NaN, 0 to 0.99.
+        /// Probability that a report contains NaN, 0 to 0.99.
         probability: f64,
     },
-    /// Each report is moved and turned in a random direction with this probability.
+    /// Some reports, chosen at random, are moved and turned in a random direction.
     Jump {
         /// Probability that a report jumps, 0 to 0.99.
         probability: f64,

@@ -6,7 +6,7 @@ use super::{FARTHEST_M, FASTEST, LATEST_S};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The recording holds no samples.
+    /// The recording contains no samples.
     #[error("expected at least one sample, found none")]
     Empty,
     /// The text cannot be read: input or output failed, or the text is not UTF-8.
@@ -22,7 +22,7 @@ pub enum RecordingError {
          mapping of columns, found {found}"
     )]
     Format {
-        /// Number of the first line, from 1.
+        /// Line number of the first line with content, counted from 1.
         line: u64,
         /// Text of the line, as it was read.
         found: String,
@@ -30,7 +30,7 @@ pub enum RecordingError {
     /// The header of a pose log lacks required columns.
     #[error("line {line}: expected the columns of a pose log, of which {missing} are missing; found {found}")]
     PoseLog {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
         /// Required columns that the header lacks, separated by commas.
         missing: String,
@@ -40,7 +40,7 @@ pub enum RecordingError {
     /// A line of a file with one JSON object per line cannot be parsed.
     #[error("line {line}: expected an object of JSON, found {found}")]
     Json {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
         /// Message of the JSON parser, or a description of the missing columns.
         found: String,
@@ -48,7 +48,7 @@ pub enum RecordingError {
     /// A column that the user's mapping names does not exist in the file.
     #[error("line {line}: expected a column `{expected}` for {field}, found {found}")]
     Column {
-        /// Number of the header's line, from 1.
+        /// Line number of the header, counted from 1.
         line: u64,
         /// Name of the quantity that is mapped to the missing column.
         field: String,
@@ -68,19 +68,19 @@ pub enum RecordingError {
     /// A line has too few or too many fields.
     #[error("line {line}: expected {expected} fields, found {found}")]
     Fields {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Required number of fields.
+        /// Number of fields that the line must have.
         expected: usize,
-        /// Number of fields in the line.
+        /// Number of fields that the line has.
         found: usize,
     },
     /// A field is not a finite number.
     #[error("line {line}, {column}: expected a finite number, found {found:?}")]
     NotANumber {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Name of the column, as in the header.
+        /// Name of the column with the error, as the header has it.
         column: String,
         /// Text of the field, as it was read.
         found: String,
@@ -88,9 +88,9 @@ pub enum RecordingError {
     /// A time stamp is negative or beyond 10^7 s.
     #[error("line {line}, {column}: expected 0 to {LATEST_S} s, found {found_s} s")]
     TimeOutOfRange {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Name of the column, as in the header.
+        /// Name of the column with the error, as the header has it.
         column: String,
         /// Time stamp of this line, s. In most formats the time counts from the first line of the file, and then this
         /// is the time since the first line.
@@ -99,9 +99,9 @@ pub enum RecordingError {
     /// A time stamp is earlier than the time stamp of the line before.
     #[error("line {line}, {column}: expected {previous_s} s or more, the time of the line before, found {found_s} s")]
     NotRising {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Name of the column, as in the header.
+        /// Name of the column with the error, as the header has it.
         column: String,
         /// Time stamp of the line before, s.
         previous_s: f64,
@@ -111,9 +111,9 @@ pub enum RecordingError {
     /// The length of a quaternion differs from 1 by more than the tolerance.
     #[error("line {line}, {columns}: expected a quaternion of length 1, found {found}")]
     NotUnit {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Names of the quaternion's columns, as in the header.
+        /// Names of the quaternion's four columns, as the header has them.
         columns: String,
         /// Length of the recorded quaternion.
         found: f64,
@@ -121,9 +121,9 @@ pub enum RecordingError {
     /// A coordinate of a position exceeds the limit of 10^8 m, which is more than the size of the Earth.
     #[error("line {line}, {column}: expected -{FARTHEST_M:e} to {FARTHEST_M:e} m, found {found_m:e} m")]
     TooFar {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
-        /// Name of the column, as in the header.
+        /// Name of the column with the error, as the header has it.
         column: String,
         /// The coordinate that is out of range, m.
         found_m: f64,
@@ -133,7 +133,7 @@ pub enum RecordingError {
         "line {line}: expected at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before, found {found:e} {unit}"
     )]
     TooFast {
-        /// Number of the line, from 1.
+        /// Line number of the error in the file, counted from 1.
         line: u64,
         /// Speed of the head since the previous sample, in `unit`.
         found: f64,
