@@ -34,7 +34,7 @@ fn orientation() -> MatrixWords {
     Orientation::from_quaternion([0.2, -0.35, 0.05, 0.9]).expect("a rotation").words(16)
 }
 
-/// Computes the same pixels one by one: footprint, nearest memory, weights.
+/// Computes the same pixels one by one: texel addresses, nearest memory, weights.
 fn plain(table: &LensTable, unit: &AddressUnit, matrix: &MatrixWords, memories: &[FaceSet], out: &mut [u32]) {
     for (place, pixel) in (0_u32..).zip(out) {
         let vector = table.entry(place % table.width(), place / table.width());

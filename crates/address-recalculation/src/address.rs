@@ -17,7 +17,7 @@ pub(crate) struct FaceHit {
 }
 
 impl FaceHit {
-    /// Returns the face that a direction hits, or `None` for the zero vector.
+    /// Returns the intersection of a direction with the face that the direction hits, or `None` for the zero vector.
     pub(crate) fn of(direction: [i64; 3]) -> Option<Self> {
         if direction == [0; 3] {
             return None;
@@ -29,7 +29,7 @@ impl FaceHit {
     }
 }
 
-/// The four texels that show a direction, and their weights.
+/// The four texels from which the colour for a direction is interpolated, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
@@ -101,7 +101,8 @@ impl AddressUnit {
         (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * inner + inner / 2 - half
     }
 
-    /// Returns the fraction of a position in `weight_bits` bits, from 0 to 1 inclusive. Halves are rounded up.
+    /// Returns the fraction of a texel in a position, from 0 to 1 inclusive, in `weight_bits` bits. Halves are rounded
+    /// up.
     pub(crate) const fn fraction(&self, place: i64) -> u32 {
         let below = self.quotient_bits - self.weight_bits;
         let fraction = place & ((1 << self.quotient_bits) - 1);

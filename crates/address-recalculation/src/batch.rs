@@ -11,7 +11,7 @@ use crate::address::AddressUnit;
 use crate::orientation::MatrixWords;
 use multiversion::multiversion;
 
-/// Number of pixels per group: enough to amortize a call, and small enough for the first-level cache.
+/// Number of pixels per group. It is large enough to amortize a call, and small enough for the first-level cache.
 pub(crate) const BATCH: usize = 64;
 
 type Each<T> = [T; BATCH];

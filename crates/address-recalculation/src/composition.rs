@@ -16,7 +16,7 @@ pub enum CompositionOrder {
 }
 
 impl CompositionOrder {
-    /// All orders with their names on the command line.
+    /// Both orders, each with its name on the command line.
     pub const ALL: [(&str, Self); 2] =
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
@@ -26,7 +26,7 @@ impl CompositionOrder {
 pub struct Composition {
     /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
-    /// Colour of empty texels without a background memory, 0x00RRGGBB.
+    /// Colour of empty texels if there is no background memory, 0x00RRGGBB.
     pub background: u32,
     /// Number of bits of an interpolation fraction.
     pub weight_bits: u64,
@@ -34,7 +34,7 @@ pub struct Composition {
 
 /// Inputs for the computation of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
-    /// For each memory, the words of the upper left, upper right, lower left and lower right texel.
+    /// For each display memory, the words of the upper left, upper right, lower left and lower right texel.
     pub(crate) memories: &'a [[u64; 4]],
     /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],

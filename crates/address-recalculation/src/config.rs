@@ -33,7 +33,8 @@ pub struct ArpConfig {
 }
 
 impl ArpConfig {
-    /// Configuration for Pixel-Planes 5: faces of 256 texels, which a port of the ring can fill 25 times per second.
+    /// Configuration for Pixel-Planes 5, with faces of 256 texels. A port of the ring can fill such faces 25 times per
+    /// second.
     pub const MACHINE: Self = Self {
         timing: ArpTiming::PAPERS,
         scan: ScanTiming::PAPERS,

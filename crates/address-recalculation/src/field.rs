@@ -13,7 +13,7 @@ use image::{Rgb, RgbImage};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::{Arc, OnceLock};
 
-/// Data shared by all fields of a display.
+/// Data that all fields of a display share.
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
@@ -30,7 +30,7 @@ impl Optics {
     }
 }
 
-/// The buffers that the memories of one eye showed, with the background memory last.
+/// The buffers that were visible in the memories of one eye. The background memory is last.
 #[derive(Clone, Debug)]
 pub(crate) struct ShownBuffers {
     pub(crate) memories: Vec<(MemoryKind, Arc<Regions>)>,

@@ -12,7 +12,7 @@ const WIDEST_FLAT_DEG: f64 = 170.0;
 /// The lens between the picture and the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
-    /// No lens: the pixels lie on a plane.
+    /// No lens distortion: the pixels lie on a plane.
     #[default]
     Flat,
     /// A radial polynomial that multiplies the distance rho from the middle by 1 + k1 rho^2 + k2 rho^4.
@@ -48,7 +48,7 @@ impl Picture {
         [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
     }
 
-    /// Returns the tangent of half the horizontal angle.
+    /// Returns the tangent of half the horizontal viewing angle.
     fn tangent(&self) -> f64 {
         libm::tan(self.horizontal_deg.to_radians() / 2.0)
     }
@@ -229,7 +229,7 @@ fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
 pub struct LensTable {
     width: u32,
     height: u32,
-    /// Components x, y and z of all pixels, in row order.
+    /// Components of all viewing vectors in row order, separately for x, y and z.
     words: [Vec<i32>; 3],
 }
 

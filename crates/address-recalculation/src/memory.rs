@@ -11,7 +11,7 @@ use std::sync::{Arc, OnceLock};
 /// Number of texels in a region.
 const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// Number of words in a message of pixels.
+/// Number of words in a message that contains pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
 /// A region that has arrived. Its texels are computed only when it is read.
@@ -24,7 +24,7 @@ pub(crate) struct StoredRegion {
 /// The regions of a buffer that have arrived in the current update. All other regions are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
-/// Properties of a memory: size of its faces, format of its texels, and presence of depth.
+/// Properties of a memory: size of its faces, format of its texels, and whether it stores depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
@@ -152,7 +152,7 @@ impl DisplayMemory {
         self.shown
     }
 
-    /// Returns the size of both buffers in bytes.
+    /// Returns the size of both buffers together, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let depth = if self.kind.has_depth { self.kind.format.depth_bits } else { 0 };

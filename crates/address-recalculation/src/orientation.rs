@@ -8,7 +8,8 @@ use pxpl5_sim::Time;
 /// Largest accepted deviation from a rotation matrix, measured in the scalar products of the rows.
 const TOLERANCE: f64 = 1e-3;
 
-/// A checked rotation from head axes to world axes. The columns of the matrix are the axes of the head.
+/// A rotation from head axes to world axes, checked to be a rotation. The columns of the matrix are the axes of the
+/// head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
     rows: [Vector; 3],

@@ -20,7 +20,7 @@ pub enum Latch {
 }
 
 impl Latch {
-    /// All variants with their names on the command line.
+    /// All events, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
@@ -63,13 +63,13 @@ impl Scan {
         self.timing.visible_lines as u32 * 2
     }
 
-    /// Returns the retrace at which a field starts.
+    /// Returns the time of the retrace at which a field starts.
     #[must_use]
     pub const fn retrace(&self, field: PeriodNumber) -> Time {
         self.field.edge(field.0)
     }
 
-    /// Returns the field that is scanned at an instant. At a retrace, this is the field that begins.
+    /// Returns the number of the field that is scanned at an instant. At a retrace, this is the field that begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);

@@ -76,7 +76,7 @@ impl FaceSet {
         Self { texels, format, words: vec![0; 6 * (texels * texels) as usize] }
     }
 
-    /// Returns the number of texels along an edge.
+    /// Returns the number of texels along an edge of a face.
     #[must_use]
     pub const fn texels(&self) -> u32 {
         self.texels

@@ -36,9 +36,9 @@ parameters::parameter_table! {
 }
 
 parameters::parameter_table! {
-    /// Timing of the scan: NTSC video, as in the frame buffer of Pixel-Planes 5.
+    /// Timing of the video scan: NTSC, as in the frame buffer of Pixel-Planes 5.
     pub struct ScanTiming {
-        /// Period of the pixel clock, multiplied by `pixel_divisor`.
+        /// Period of the pixel clock, multiplied by `pixel_divisor`. The period is the quotient of both numbers.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
         /// Number by which `pixel_ps` is divided to get the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";

@@ -193,7 +193,7 @@ fn memories_are_composed_by_depth_over_the_ring() {
     }
 }
 
-/// A function that sends a message to a bench.
+/// A function that sends a message to the display on a test bench.
 type Send = fn(&mut Bench);
 
 #[test]

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use pxpl5_sim::SplitMix64;
 use support::{noise, texels, turned};
 
-/// A picture of 31 x 14 pixels, whose lines are not a multiple of eight pixels.
+/// A scan of 31 x 14 pixels, whose lines are not a multiple of eight pixels.
 const SMALL: ScanTiming = ScanTiming { visible_pixels: 31, visible_lines: 7, ..ScanTiming::PAPERS };
 
 fn by_lookup(
@@ -71,7 +71,7 @@ fn compare(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], 
     assert_eq!(fast, literal, "{config:?} {orientation:?}");
 }
 
-/// Returns word lengths within the limits of the parameter table.
+/// Returns a strategy for random word lengths within the limits of the parameter table.
 fn words() -> impl Strategy<Value = ArpTiming> {
     let bits = (8_u64..=24, 8_u64..=24, 8_u64..=20, 0_u64..=8);
     let usual = Just((16, 16, 16, 4));

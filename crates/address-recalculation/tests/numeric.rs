@@ -1,4 +1,4 @@
-//! Numeric cases of the specification for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
+//! Tests of the specification's numeric cases for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
 
 use address_recalculation::{
     AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, Orientation, Picture, TexelAddress, Vector,

@@ -1,4 +1,4 @@
-//! The display on the ring: a port, a rotating screen, and a strobe for every slice.
+//! The display on the ring: a port, a rotating screen, and a strobe (flash of the projector) for every slice.
 
 use crate::store::{FrameStore, StoreReceipt};
 use crate::timing::PerspectaConfig;

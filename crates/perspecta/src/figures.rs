@@ -19,14 +19,14 @@ pub struct Definition {
     pub id: &'static str,
     /// Statement of the paper, in words.
     pub statement: &'static str,
-    /// Value of the number in this model, in `unit`.
+    /// Value of the number in this model. Its unit is `unit`.
     pub value: f64,
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
     pub standing: Standing,
 }
 
-/// A figure of the paper and the corresponding value of the model.
+/// A figure of the paper, and the value that the model gives for it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.

@@ -1,4 +1,4 @@
-//! Two frame stores of bit planes: one is shown while the other is filled.
+//! Two frame stores of bit planes. One is shown while the other is filled.
 
 use crate::protocol::{StoreMessage, read, rows};
 use pxpl5_sim::Time;

@@ -274,7 +274,7 @@ struct Strobe {
     /// axes.
     across: [f64; 3],
     upward: [f64; 3],
-    /// Normal of the screen, in the eye's axes.
+    /// Normal of the screen, in components along the eye's axes.
     normal: [f64; 3],
     distance: f64,
     focal: f64,

@@ -14,7 +14,7 @@ fn build(config: &PerspectaConfig) -> Box<dyn Display> {
     config.build(&[NodeId(7)]).expect("valid")
 }
 
-/// Returns a volume with a few lit pixels in some slices.
+/// Returns a volume in which a few pixels of some slices are lit.
 fn volume(seed: u32) -> BitPlanes {
     let mut planes = BitPlanes::dark([64, 48], 12);
     for k in [0, 3, 4, 11] {

@@ -20,7 +20,7 @@ const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("cells, no cascade", &[("policy", "cells"), ("segment", "on"), ("warp", "linear"), ("priority.cascade", "off")]),
 ];
 
-/// Returns the number of variants that [`compare`] runs.
+/// Returns the number of combinations of policy, segmentation and warping that [`compare`] runs.
 #[must_use]
 pub const fn variant_count() -> u64 {
     VARIANTS.len() as u64
@@ -43,7 +43,7 @@ pub struct ComparedRow {
     pub eye_age_mm: f64,
     /// Widths of the displayed tears, in texels. Null in JSON if no memories meet in a cut.
     pub tears: Option<Percentiles>,
-    /// Angles by which warping moves vertices, in texels. Null in JSON without warping.
+    /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
     pub stretch: Option<Percentiles>,
     /// Number of new assignments of cells to memories, or number of times that objects changed memories.
     pub changes: u64,

@@ -11,7 +11,7 @@ use priority_rendering::{CellAssignment, PriorityError, RegionWarp};
 pub struct Content {
     /// Position of the eye from which the memory is drawn.
     pub eye: DVec3,
-    /// Frame at whose start the eye had this position.
+    /// Index of the frame at whose start the eye had this position.
     pub frame: u64,
     /// Indices of the segments that the memory contains.
     pub segments: Vec<usize>,
@@ -29,7 +29,7 @@ impl Content {
             .map_or(vertex, |(warp, dealing, memory)| warp.moved(vertex, dealing.to_slower(vertex, *memory)))
     }
 
-    /// Returns the direction in which a vertex is drawn. The vector does not have unit length.
+    /// Returns the direction from the eye in which a vertex is drawn. The vector does not have unit length.
     #[must_use]
     pub fn direction(&self, vertex: DVec3) -> DVec3 {
         self.place(vertex) - self.eye
@@ -40,7 +40,7 @@ impl Content {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
 
-    /// Returns the number of triangles of one update.
+    /// Returns the number of triangles that an update of the memory draws.
     #[must_use]
     pub fn triangles(&self, world: &World) -> u64 {
         self.segments.iter().map(|segment| world.segments[*segment].triangles.len() as u64).sum()

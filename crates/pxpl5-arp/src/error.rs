@@ -10,12 +10,12 @@ use tracking::SettingError;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The scene contains something that faces cannot show.
+    /// The scene contains an object that cube faces cannot show.
     #[error("scene {scene}: expected {expected}, found {found}")]
     Scene {
         /// Name of the scene.
         scene: String,
-        /// The requirement for every part of the scene.
+        /// The rule that every part of the scene must obey.
         expected: &'static str,
         /// The part that violates the requirement.
         found: String,
@@ -60,7 +60,7 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
-    /// Returns true if the error lies in the scene.
+    /// Returns true if the scene causes the error.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {
         matches!(self, Self::Scene { .. })

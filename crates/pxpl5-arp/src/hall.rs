@@ -22,7 +22,7 @@ pub enum Route {
 }
 
 impl Route {
-    /// All routes with their names on the command line.
+    /// All routes, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] =
         [("scene", Self::Scene), ("straight", Self::Straight), ("diagonal", Self::Diagonal), ("round", Self::Round)];
 }

@@ -54,9 +54,9 @@ pub struct Plan {
 /// A threshold in pixels or texels. It becomes an angle once the display's resolution is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
-    /// Pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
+    /// Threshold in pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
     Pixels(f64),
-    /// Texels of a face. One texel is 90 degrees divided by the texels of an edge.
+    /// Threshold in texels of a face. One texel is 90 degrees divided by the texels of an edge.
     Texels(f64),
 }
 
@@ -80,7 +80,7 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
-/// A parameter table and the prefix of its paths.
+/// A table of parameters, and the first part of their paths.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl Plan {
@@ -123,7 +123,7 @@ impl Plan {
         all.map(|(prefix, entry)| (format!("{prefix}.{}", entry.info.name), entry)).collect()
     }
 
-    /// Returns the settings that were given explicitly, by path.
+    /// Returns the settings that the user gave explicitly, by path.
     #[must_use]
     pub const fn said(&self) -> &BTreeMap<String, String> {
         &self.said

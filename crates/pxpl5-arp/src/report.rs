@@ -56,7 +56,7 @@ pub struct Report {
 pub struct MemoryReport {
     /// Number of times per second that the memory shows a new update.
     pub updates_hz: f64,
-    /// Mean number of frames between updates. Null without updates.
+    /// Mean number of frames between two updates of the memory. Null without updates.
     pub period_frames: Option<f64>,
     /// Number of segments in the memory, averaged over frames.
     pub segments: f64,
@@ -79,11 +79,11 @@ pub struct MemoryReport {
 /// Results of a policy, which decides when each memory is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorityReport {
-    /// Name of the policy: `full`, `objects` or `cells`.
+    /// Name of the policy that decides which segments are drawn in which frames: `full`, `objects` or `cells`.
     pub policy: &'static str,
     /// Largest accepted image error, in degrees. Null if the policy draws everything in every frame.
     pub theta_deg: Option<f64>,
-    /// Side of a cell in metres. Null without cells.
+    /// Side of a square cell of the floor, in metres. Null without cells.
     pub cell_m: Option<f64>,
     /// Number of segments (parts of objects in one cell) that are drawn per second.
     pub draws_per_s: f64,
@@ -113,7 +113,7 @@ pub struct TearsReport {
 pub struct Latency {
     /// Sum of all parts in ms.
     pub total: Option<f64>,
-    /// Parts by name in ms. Null for parts that were not simulated.
+    /// Parts of the latency by name, in ms. Null for parts that were not simulated.
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 

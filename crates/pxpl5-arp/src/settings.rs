@@ -14,13 +14,13 @@ pub enum PolicyKind {
     Full,
     /// Each object is in the least often updated memory that keeps its image error below the threshold.
     Objects,
-    /// Square cells, assigned to memories by their distance from the user's cell.
+    /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the user's cell.
     #[default]
     Cells,
 }
 
 impl PolicyKind {
-    /// All policies with their names on the command line.
+    /// All policies, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
     #[must_use]
@@ -33,7 +33,7 @@ impl PolicyKind {
     }
 }
 
-/// Speed of the renderer that draws the faces.
+/// Speed of the renderer that draws the cube faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SourceKind {
     /// A renderer that takes no time: updates that are due in a frame are shown in the same frame.
@@ -58,7 +58,7 @@ const FAR_M: f64 = 100.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     pub policy: PolicyKind,
-    /// True if objects are cut at the borders of cells.
+    /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
     /// Decrease of the warp from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
     pub falloff: Falloff,

@@ -50,7 +50,7 @@ pub struct FrameOutcome {
     pub swapped: Vec<bool>,
     /// For each memory, true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
-    /// True if cells were assigned to memories anew.
+    /// True if cells were newly assigned to memories in this frame.
     pub deals_anew: bool,
 }
 
@@ -228,7 +228,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the memory that a unit currently belongs to.
+    /// Returns the index of the memory to which a unit (an object or a segment) currently belongs.
     fn memory(&self, unit: usize) -> usize {
         match &self.policy {
             Policy::Full => 0,

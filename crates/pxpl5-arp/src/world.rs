@@ -11,7 +11,7 @@ use std::ops::Range;
 /// The part of an object that lies in one cell of the scene's floor plan.
 #[derive(Clone, Debug)]
 pub struct Segment {
-    /// Index of the object that the segment was cut from.
+    /// Index of the object from which the segment was cut.
     pub object: usize,
     /// Cell that contains the segment.
     pub cell: Cell,
@@ -32,7 +32,7 @@ pub struct Object {
 pub struct SharedVertex {
     /// Index into [`World::vertices`].
     pub vertex: u32,
-    /// Indices of the segments with this vertex, at least two.
+    /// Indices of the segments that have this vertex, at least two.
     pub segments: Vec<usize>,
 }
 
@@ -59,7 +59,7 @@ pub struct World {
     pub segments: Vec<Segment>,
     /// The objects of the scene.
     pub objects: Vec<Object>,
-    /// Vertices at which segments of an object meet.
+    /// Vertices that several segments of an object share.
     pub shared: Vec<SharedVertex>,
     /// Background colour, 0x00RRGGBB.
     pub background: u32,
@@ -124,7 +124,8 @@ impl World {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Returns the triangles of some segments. `place` maps a vertex to the position at which it is drawn.
+    /// Returns the triangles of some segments. `place` is a function from a vertex to the position at which it is
+    /// drawn.
     pub fn triangles<'a>(
         &'a self,
         segments: &'a [usize],
@@ -161,7 +162,8 @@ impl World {
     }
 }
 
-/// Returns a colour for a number. Steps of the golden ratio on the colour circle make neighbouring numbers differ.
+/// Returns a colour for a number. The hue changes by the golden ratio from one number to the next, so the colours of
+/// neighbouring numbers differ.
 fn distinct(number: u64) -> u32 {
     let hue = (number as f64 * 0.618_033_988_749_895).fract() * 6.0;
     packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))

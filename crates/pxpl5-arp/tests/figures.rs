@@ -1,4 +1,4 @@
-//! The papers' figures: fitted numbers, checked numbers, and the generated document.
+//! Tests of the papers' figures: fitted numbers, checked numbers, and the generated document.
 
 use pxpl5_arp::figures::{
     Experiments, RATE_FITTED, RATES_HZ, Row, Rules, Situation, Standing, all, definitions, markdown,

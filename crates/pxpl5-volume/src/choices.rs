@@ -37,14 +37,14 @@ pub enum ProjectionKind {
 }
 
 impl ProjectionKind {
-    /// All three projections in the order of a comparison.
+    /// All three projections, in the order in which a comparison lists them.
     pub const ALL: [Self; 3] = [Self::Orthographic, Self::Perspective, Self::Jittered];
 }
 
 /// The hardware that draws the slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RendererKind {
-    /// This computer, in the role of the paper's GPU.
+    /// This computer, which takes the part of the paper's GPU.
     Host,
     /// The emulated renderers of Pixel-Planes 5, which are beyond the paper.
     PixelPlanes,

@@ -38,16 +38,16 @@ pub struct VariantRow {
     pub dead_zone_radius_px: Option<u32>,
     /// Number of pixels lit in any colour, in all slices.
     pub lit_voxels: u64,
-    /// Number of lit pixels in each ring around the axis.
+    /// Number of lit pixels in each ring around the axis, from the axis outwards.
     pub brightness_by_radius: Vec<u64>,
     /// Ratio of `brightness_by_radius` to the value of the exact clip with the same projection. `None` for rings in
     /// which the exact clip lights no pixel.
     pub brightness_over_exact: Vec<Option<f64>>,
     /// Modelled times of one volume in milliseconds: processor, GPU, bus.
     pub model_ms: [f64; 3],
-    /// Volumes per second if processor, GPU and bus work one after the other.
+    /// Volumes per second of the time model if processor, GPU and bus work one after the other.
     pub volumes_hz_serial: f64,
-    /// Volumes per second if processor, GPU and bus work at the same time.
+    /// Volumes per second of the time model if processor, GPU and bus work at the same time.
     pub volumes_hz_overlapped: f64,
     /// Hash of all bits of the volume.
     pub volume_hash: String,
@@ -59,7 +59,7 @@ pub struct VariantRow {
     variant: Variant,
 }
 
-/// The comparison of all variants of a scene.
+/// The comparison of a scene's volumes for all combinations of clip, projection, samples and coverage.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeComparison {
     /// Name and version of this record's layout.

@@ -18,7 +18,7 @@ pub enum VolumeError {
         /// The valid path that is most similar.
         nearest: String,
     },
-    /// The value of a setting is not allowed.
+    /// The value that was given for a setting is not allowed.
     #[error("{place}: {key}: expected {expected}, found {found}")]
     Value {
         /// Option that contained the value.

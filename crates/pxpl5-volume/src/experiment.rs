@@ -28,7 +28,7 @@ pub struct Volume {
     pub bounds: Option<SliceBounds>,
     /// Ring messages of the volume. `None` if the host drew the volume, or if its tiles cannot be sent.
     pub traffic: Option<SliceTraffic>,
-    /// Time that this computer took to draw the volume, seconds.
+    /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
 }
 

@@ -85,7 +85,7 @@ pub struct HeadStudy {
     pub latency_ms: f64,
     /// Origin of the latency: "the volume's" if both displays have the same latency, or "given".
     pub latency_is: &'static str,
-    /// Latency with which the volume shows changes of the scene, milliseconds.
+    /// Latency with which the volume shows changes of the scene, in milliseconds, or `None` if no GPU drew the volume.
     pub volume_latency_ms: Option<f64>,
     /// Visual angle of a pixel in the middle of the head-mounted display, in degrees.
     pub hmd_pixel_deg: f64,
@@ -102,7 +102,7 @@ pub struct HeadStudyConfig {
     pub latency_ms: Option<f64>,
     /// Duration of the study, in seconds.
     pub seconds: f64,
-    /// Number of instants in the study, 2 or more.
+    /// Number of instants at which errors are evaluated, 2 or more.
     pub instants: u32,
 }
 
@@ -348,7 +348,8 @@ fn moved(image: &SliceImage, by: DVec2) -> RgbImage {
     })
 }
 
-/// Returns the matrix from metres of the world to pixels of an upright volume before a head.
+/// Returns the matrix from world coordinates in metres to coordinates of an upright volume in pixels. The volume stands
+/// before the head.
 fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     let ahead = head.orientation * DVec3::NEG_Z;
     let yaw = DQuat::from_rotation_y(libm::atan2(-ahead.x, -ahead.z));

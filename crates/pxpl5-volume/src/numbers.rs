@@ -33,9 +33,9 @@ parameters::parameter_table! {
         up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
         /// Distance of the perspective eye from the slice.
         distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the same as with jitter";
-        /// Horizontal shear, in pixels per pixel of distance from the slice.
+        /// Horizontal shear of the perspective projection, in pixels per pixel of distance from the slice.
         shear_across: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
-        /// Vertical shear, in pixels per pixel of distance from the slice.
+        /// Vertical shear of the perspective projection, in pixels per pixel of distance from the slice.
         shear_up: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
     }
 }
@@ -79,7 +79,7 @@ parameters::parameter_table! {
         eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "the mean of human heads";
         /// Width of the head-mounted display's picture, whose height is three quarters of the width.
         hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
-        /// Angle between the left and the right edge of the head-mounted display's picture.
+        /// Viewing angle between the left and the right edge of the head-mounted display's picture.
         hmd_angle_deg: f64 = 60.0, "deg", Assumed, 30.0..=100.0 in 1.0..=170.0, "published in JITP's example";
     }
 }

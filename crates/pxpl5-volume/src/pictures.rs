@@ -8,13 +8,13 @@ use image::{GenericImage, Rgb, RgbImage};
 use perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
-/// Thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
+/// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
 pub const SHEET_COLUMNS: u32 = 22;
 
 /// Distance from one thumbnail of a sheet to the next, in pixels.
 const THUMBNAIL: u32 = 64;
 
-/// Fraction of the lit pixels of a view that stay below white.
+/// Fraction of the lit pixels in a view that stay below white at the chosen exposure.
 const BELOW_WHITE: f64 = 0.98;
 
 /// Number of batches per row of a tile map.

@@ -73,7 +73,7 @@ pub struct VolumeReport {
     /// Connectedness of surfaces: percentage of samples on the intersections of mesh and slices that have a drawn pixel
     /// beside them.
     pub connected_percent: f64,
-    /// Number of lit pixels by their distance from the axis.
+    /// Number of lit pixels in rings around the axis.
     pub brightness_by_radius: Brightness,
     /// Radius in pixels around the axis within which no slice can show a point of any scene. `None` if no slice can
     /// show anything.
@@ -110,7 +110,8 @@ pub struct PixelPlanesReport {
     pub definition: &'static str,
     /// Volumes per second of several machines. The slowest part alone limits each rate.
     pub bounds: Vec<BoundRow>,
-    /// Results of simulating the same machines event by event. The list is empty if the volume's tiles cannot be sent.
+    /// Results of the event-by-event simulation of the same machines. The list is empty if the volume's tiles cannot be
+    /// sent.
     pub simulated: Vec<SimulatedRow>,
 }
 
@@ -179,7 +180,7 @@ pub struct ModelTimes {
     pub bus_unpacked: ModelPart,
 }
 
-/// A number of the settings that differs from the paper's value.
+/// A setting whose number differs from the paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
     /// Path of the number, as after `--set`.
@@ -197,7 +198,7 @@ const BUS: &str = "bytes sent / readback, and the same to the projector";
 const BUS_UNPACKED: &str = "4 bytes a pixel of all slices / readback, and the same to the projector";
 
 impl Volume {
-    /// Returns the time of the volume by the time model of its settings.
+    /// Returns the modelled time of the volume, computed with the time model of its settings.
     #[must_use]
     pub fn time(&self) -> VolumeTime {
         let tile = self.settings.tile.size as u32;

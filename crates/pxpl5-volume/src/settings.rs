@@ -106,7 +106,7 @@ impl VolumeSettings {
         ]
     }
 
-    /// Returns the clip with its offset or bias.
+    /// Returns the clip, with its offset or bias.
     #[must_use]
     pub const fn slice_clip(&self) -> SliceClip {
         let ClipNumbers { offset_px, bias_px2, .. } = self.clip_numbers;

@@ -26,7 +26,8 @@ fn wedge() -> HalfWedge {
     HalfWedge::new(396, 384.0)
 }
 
-/// Returns a number in [0, 1) from a counter: an element of the low-discrepancy sequence of the plastic number.
+/// Returns a pseudorandom number in [0, 1) from a counter. It is an element of the low-discrepancy sequence of the
+/// plastic number.
 fn unit(n: u32, dimension: u32) -> f64 {
     (0.5 + f64::from(n) * 0.754_877_666_246_692_8 * f64::from(dimension + 1).sqrt()).fract()
 }
@@ -186,7 +187,8 @@ fn the_halftones_program_gives_the_hosts_bits_in_72_clocks() {
     halftone_on(&mut BitSerial::new(&layout), &layout, &matrix);
 }
 
-/// Pixel (x, y) holds level 2 x + y / 64 in red, its complement in green and x in blue.
+/// Stores colours in an array and halftones them. Pixel (x, y) gets level 2 x + y / 64 in red, its complement in green
+/// and x in blue.
 fn halftone_on(array: &mut impl PixelArray, layout: &Layout, matrix: &Halftone) {
     let levels = |x: u32, y: u32| [(2 * x + y / 64) as u8, !((2 * x + y / 64) as u8), x as u8];
     let mut load = |field: Operand, value: &dyn Fn(u32, u32) -> u8| {

@@ -22,7 +22,7 @@ pub struct BinRegion {
 /// The planes and regions by which primitives are sorted for a display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
-    /// Planes (a, b, c, d), positive where a x + b y + c z + d >= 0.
+    /// Planes (a, b, c, d). A plane is positive at points with a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
     /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
@@ -54,7 +54,7 @@ pub enum BinTolerance {
     /// Zero, as in the paper's codes: zero is positive, and no vertex counts as lying on both sides. These codes lose
     /// fragments if the clip enlarges the slice volumes.
     Codes,
-    /// A fixed distance in pixels, independent of the clip.
+    /// A fixed distance in pixels, which does not depend on the clip.
     Pixels(f64),
 }
 

@@ -20,9 +20,9 @@ pub enum Combine {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangle,
-    /// A line with its width in pixels of the image.
+    /// A line. The number is its width in pixels of the image.
     Line(f64),
-    /// A point with its size in pixels of the slice.
+    /// A point. The number is its size in pixels of the slice.
     Point(f64),
 }
 

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// A vertex, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Position, in pixels if the model-view matrix is the identity.
+    /// Position in the object's coordinates. They are pixels if the model-view matrix is the identity.
     pub position: DVec3,
     /// Normal of the surface, of any length. It matters only with lighting.
     pub normal: DVec3,
@@ -79,7 +79,7 @@ pub enum Topology {
 /// A directional light that shines on both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Direction towards the light in world coordinates, of any length except zero.
+    /// Direction towards the light source in world coordinates, of any length except zero.
     pub direction: DVec3,
     /// Fraction of a surface's colour that is visible without light.
     pub ambient: f64,
@@ -97,7 +97,7 @@ pub struct Context {
     pub point_size: f64,
     /// Width of lines, in pixels of the image.
     pub line_width: f64,
-    /// Light of the scene. `None` leaves colours unchanged.
+    /// Light source of the scene. With `None`, colours stay unchanged.
     pub light: Option<Light>,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,

@@ -1,6 +1,6 @@
 //! The intersection of a triangle with the plane of a slice.
 
-/// The two ends of an intersection, and the weights of the triangle's corners at each end.
+/// The two ends of a triangle's intersection with a plane, and the weights of the triangle's corners at each end.
 pub(crate) type PlaneCurve = ([[f64; 3]; 2], [[f64; 3]; 2]);
 
 /// Returns the two ends of a triangle's intersection with the plane s = `s`, and the weights of the corners at each

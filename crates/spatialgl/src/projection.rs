@@ -37,7 +37,7 @@ pub struct Jitter {
     pub seed: u64,
     /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
-    /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
+    /// Radius of the disc in which the random eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
     /// Greatest shift of a point by the shear, at the face of the slice's slab, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,

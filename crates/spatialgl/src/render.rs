@@ -157,7 +157,7 @@ impl SliceWords<'_> {
     }
 }
 
-/// The data that all batches of a volume share.
+/// The data that all batches of slices of a volume share.
 struct Volume<'a> {
     commands: &'a CommandBuffer,
     config: &'a VolumeConfig,

@@ -57,8 +57,8 @@ fn draw_sphere(context: &mut Context, sphere: &Sphere) -> Result<(), SpatialErro
     context.draw_indexed(&VertexBuffer::new(vertices)?, &indices, Topology::Triangles)
 }
 
-/// Returns vertices and triangle indices of a sphere with `rows` x `2 rows` facets. Vertices are at polar angles pi a /
-/// rows from +y and azimuths pi b / rows from +x to +z.
+/// Returns vertices and triangle indices of a sphere with `rows` x `2 rows` facets. Vertex (a, b) has the polar angle
+/// pi a / rows from +y, and the azimuth pi b / rows from +x to +z.
 #[must_use]
 pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<Vertex>, Vec<u32>) {
     let columns = 2 * rows;

@@ -66,7 +66,7 @@ impl TileGrid {
         [left, top, (left + self.tile).min(self.size[0]), (top + self.tile).min(self.size[1])]
     }
 
-    /// Returns the number of eight-pixel words in a tile.
+    /// Returns the number of words in a tile. A word has eight pixels.
     #[must_use]
     pub fn words(&self, tile: u32) -> u64 {
         let [left, top, right, bottom] = self.rectangle(tile);

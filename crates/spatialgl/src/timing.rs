@@ -66,13 +66,13 @@ impl VolumeTime {
         self.readback_ms + self.projector_ms
     }
 
-    /// Returns the volumes per second if processor, GPU and bus work one after the other.
+    /// Returns the number of volumes per second if processor, GPU and bus work one after the other.
     #[must_use]
     pub fn serial_hz(&self) -> f64 {
         1e3 / (self.cpu_ms + self.gpu_ms + self.bus_ms())
     }
 
-    /// Returns the volumes per second if processor, GPU and bus work at the same time on different volumes.
+    /// Returns the number of volumes per second if processor, GPU and bus work at the same time on different volumes.
     #[must_use]
     pub fn overlapped_hz(&self) -> f64 {
         1e3 / self.cpu_ms.max(self.gpu_ms).max(self.bus_ms())
@@ -134,7 +134,7 @@ impl TimeModel {
     }
 }
 
-/// Returns the milliseconds of `count` operations at a rate in millions per second.
+/// Returns the time in milliseconds of `count` operations. The rate is given in millions per second.
 fn millions_ms(count: u64, millions: u64) -> f64 {
     count as f64 / (millions as f64 * 1e3)
 }

@@ -16,7 +16,7 @@ pub struct SliceView {
     pub projection: DMat4,
     /// Part of space that the slice represents.
     pub volume: SliceVolume,
-    /// Bins that the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
+    /// Bins whose primitives the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
     pub bins: u64,
     /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
     pub hides: bool,
@@ -28,7 +28,7 @@ pub struct SliceView {
 }
 
 impl SliceView {
-    /// Creates the view of an image of this size. The view draws the bins of group 0.
+    /// Creates the view of a slice with an image of this size. The view draws the bins of group 0.
     #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);

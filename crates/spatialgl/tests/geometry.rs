@@ -13,7 +13,7 @@ fn close(found: f64, expected: f64, half_unit: f64) {
     assert!((found - expected).abs() <= half_unit, "{found} is not {expected}");
 }
 
-/// Returns the slices of the first half turn that accept a point at height 0.
+/// Returns the indices of the slices in the first half turn that accept a point at height 0.
 fn planes_of(display: &SweptDisplay, x: f64, z: f64) -> Vec<usize> {
     (0..198).filter(|k| display.accepts(*k, DVec3::new(x, 0.0, z))).collect()
 }

@@ -21,7 +21,7 @@ pub struct BankedMemory {
 }
 
 impl BankedMemory {
-    /// Copies six faces into banks, texel by texel.
+    /// Copies the texels of six faces into banks, one by one.
     #[must_use]
     pub fn of(faces: &FaceSet) -> Self {
         let texels = faces.texels();
@@ -60,7 +60,7 @@ impl BankedMemory {
         DEPTH_FARTHEST >> (24 - self.format.depth_bits)
     }
 
-    /// Returns the colour of a cell with 8 bits per channel.
+    /// Returns the colour stored in a cell, converted to 8 bits per channel.
     pub(super) const fn wide(&self, cell: Cell) -> u32 {
         if self.format.colour_bits == 16 { widened(cell.colour) } else { cell.colour }
     }

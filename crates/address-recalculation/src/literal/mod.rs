@@ -61,7 +61,7 @@ pub struct ReferencePipeline {
     vector_bits: u64,
     matrix_bits: u64,
     stages: Vec<Stage>,
-    /// The pixel in each stage, starting with the first stage.
+    /// The pixel in each stage, or `None`. The first stage is first.
     inside: VecDeque<Option<Registers>>,
 }
 

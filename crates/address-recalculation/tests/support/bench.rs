@@ -86,13 +86,13 @@ impl Bench {
         }
     }
 
-    /// Sends a range of the 32 messages of a region.
+    /// Sends some of the 32 messages of a region. `parts` is the range of their indices.
     pub(crate) fn parts(&mut self, port: usize, buffer: u8, region: u16, source: &Arc<Flat>, parts: Range<u32>) {
         let image: Arc<dyn PixelSource> = Arc::<Flat>::clone(source);
         self.parts_of(32, (port, buffer, region), &image, parts);
     }
 
-    /// Sends some messages of a region that consists of `all` messages.
+    /// Sends some messages of a region that consists of `all` messages in total.
     pub(crate) fn parts_of(
         &mut self,
         all: u32,

@@ -8,7 +8,7 @@ use crate::world::World;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
 
-/// Edge length of the compared faces, in texels.
+/// Number of texels along the edge of the compared faces.
 const TEXELS: u32 = 128;
 
 fn small(settings: &Settings) -> Settings {

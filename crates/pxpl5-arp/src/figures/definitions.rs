@@ -6,7 +6,7 @@ use address_recalculation::ArpTiming;
 use priority_rendering::{draws_per_s, saved_percent};
 use serde::Serialize;
 
-/// Number of segments drawn by each memory, with and without segmentation (table 2).
+/// Number of segments in each display memory, with and without cutting objects at the borders of cells (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 /// A number computed from printed numbers.

@@ -9,7 +9,7 @@ use priority_rendering::{Cell, Cells, PriorityTiming};
 use pxpl5_scene::Scene;
 use tracking::motion::Walk;
 
-/// Mean update rates of memories 0 to 3, in Hz (table 1).
+/// Mean update rates of display memories 0 to 3, in Hz, as printed (table 1).
 pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 
 /// Index of the memory whose update rate determines the side of a cell.

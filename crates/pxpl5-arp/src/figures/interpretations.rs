@@ -32,7 +32,7 @@ pub enum Situation {
 /// Number of cells along a side of every hall except the gallery.
 const CELLS_ACROSS: i64 = 7;
 
-/// Number of frames of the walk through the gallery.
+/// Number of frames of the viewer's walk through the gallery.
 const GALLERY_FRAMES: u64 = 3_600;
 
 impl Situation {
@@ -103,7 +103,7 @@ impl Trial {
     }
 }
 
-/// Indices of the compared memories. Memory 0 is left out, because all rules draw it in every frame.
+/// Indices of the compared display memories. Memory 0 is left out, because all rules draw it in every frame.
 const COMPARED: [usize; 3] = [1, 2, 3];
 
 /// Results of one set of rules on one path through one hall.
@@ -153,7 +153,7 @@ pub struct LeftOutRate {
 /// All interpretations of table 1, best first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interpretations {
-    /// Sets of rules, in ascending order of their mean error.
+    /// Sets of rules with their results, in ascending order of the mean error.
     pub ranked: Vec<RankedRules>,
     /// Predictions of each of the three update rates. Rules, hall and path are chosen by the other two rates.
     pub left_out: Vec<LeftOutRate>,

@@ -1,4 +1,4 @@
-//! Comparison of the papers' figures with simulated ones.
+//! Comparison of the papers' figures with simulated figures.
 
 mod compared;
 mod definitions;

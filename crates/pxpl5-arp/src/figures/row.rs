@@ -8,7 +8,7 @@ use serde::Serialize;
 pub enum Standing {
     /// Simulated, with no parameter fitted to it.
     Checked,
-    /// Simulated with a parameter that was chosen so that this row agrees.
+    /// Simulated with a parameter whose value was chosen so that this row agrees.
     Fitted,
     /// Depends on facts that the papers do not print. The published number is compared with the interval over all
     /// interpretations.
@@ -42,7 +42,8 @@ pub struct Row {
     pub statement: String,
     /// Unit of both numbers.
     pub unit: &'static str,
-    /// Number as printed, or derived from printed numbers. NaN (null in JSON) for drawings without numbers.
+    /// Number as printed, or derived from printed numbers. NaN (null in JSON) if the paper has a drawing without
+    /// numbers.
     pub published: f64,
     /// Simulated number.
     pub ours: f64,
@@ -66,7 +67,7 @@ impl Row {
         Self { is_met: holds, ..Self::number(id, statement, unit, both, Standing::Shape) }
     }
 
-    /// Creates a row with its own criterion, such as "less than".
+    /// Creates a row that has its own criterion for agreement, such as "less than".
     #[must_use]
     pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], is_met: bool) -> Self {
         Self { is_met, ..Self::number(id, statement, unit, both, Standing::Checked) }

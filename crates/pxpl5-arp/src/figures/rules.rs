@@ -1,4 +1,4 @@
-//! Rules of priority rendering that the paper does not print.
+//! Rules of priority rendering that the paper leaves open.
 
 use priority_rendering::PriorityTiming;
 use serde::Serialize;

@@ -4,7 +4,7 @@ use crate::look::rgb;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use image::RgbImage;
 
-/// Column and row of each face in the cross, placed so that neighbouring faces join.
+/// Column and row of each face in the unfolded cube. Neighbouring faces adjoin.
 const PLACES: [(CubeFace, u32, u32); 6] = [
     (CubeFace::PosY, 1, 0),
     (CubeFace::NegX, 0, 1),

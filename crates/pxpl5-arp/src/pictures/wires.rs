@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// Near plane in metres. Edges nearer to the eye are clipped.
+/// Distance of the near plane from the eye in metres. Edges nearer to the eye are clipped.
 const NEAR_M: f64 = 0.05;
 
 /// Draws the edges of all triangles. Edges behind a surface are also drawn.
@@ -65,7 +65,7 @@ fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     p == border && q == border
 }
 
-/// Returns the part of an edge in front of the near plane.
+/// Returns the part of an edge that lies in front of the eye, beyond the near plane.
 fn before(a: DVec3, b: DVec3) -> Option<[DVec3; 2]> {
     let at_near = |from: DVec3, to: DVec3| from.lerp(to, (-NEAR_M - from.z) / (to.z - from.z));
     match (a.z < -NEAR_M, b.z < -NEAR_M) {

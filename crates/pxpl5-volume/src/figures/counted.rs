@@ -9,7 +9,7 @@ use spatialgl::{
     SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures that are counted or measured.
+/// Returns all figures of the paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
@@ -44,7 +44,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     published.into_iter().map(count).collect()
 }
 
-/// Returns a recording of [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
+/// Returns a recording of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| Vertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);

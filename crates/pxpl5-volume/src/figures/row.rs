@@ -38,7 +38,7 @@ impl DefinitionRow {
     }
 }
 
-/// All figures of the paper with the results of the model.
+/// All figures of the paper, with the results of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
     /// Name and version of this record's layout.

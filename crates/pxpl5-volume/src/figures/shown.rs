@@ -103,7 +103,7 @@ fn dilation() -> Shown {
     }
 }
 
-/// A triangle in a plane perpendicular to the axis: the third triangle of the specification.
+/// A triangle in a plane perpendicular to the axis, corners in pixels: the third triangle of the specification.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
 fn orthographic(workers: &dyn Workers) -> Result<Shown, VolumeError> {

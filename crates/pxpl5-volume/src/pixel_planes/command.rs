@@ -30,7 +30,7 @@ pub struct SliceTriangle {
     pub edges: [Linear; 3],
     /// The hyperbola A B + b as a function on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
-    /// Red, green and blue, with the fraction bits of colours on the ring.
+    /// Linear functions for red, green and blue, with as many fraction bits as colours on the ring have.
     pub colour: [Linear; 3],
 }
 
@@ -58,7 +58,7 @@ impl SliceTriangle {
         Some(Self { edges, clip, colour: [colour(0), colour(1), colour(2)] })
     }
 
-    /// Returns the program of the command, in the order of execution.
+    /// Returns the array instructions of the command, in the order of execution.
     #[must_use]
     pub fn program(&self, layout: &Layout) -> Vec<ArrayInstruction> {
         let mut program = vec![ArrayInstruction::EnableAll { label: 0 }];
@@ -79,7 +79,7 @@ impl SliceTriangle {
         Self::default().program(layout).iter().map(ArrayInstruction::clocks).sum()
     }
 
-    /// Returns the number of words of the command on the ring.
+    /// Returns the number of ring words of the command.
     #[must_use]
     pub fn words(layout: &Layout) -> usize {
         let mut words = Vec::new();

@@ -37,7 +37,7 @@ pub struct RendererWork {
     pub left_out: u64,
     /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
-    /// Number of words of commands on the ring.
+    /// Number of ring words of all commands.
     pub command_words: u64,
 }
 
@@ -235,7 +235,7 @@ fn bounds(corners: &[SliceCorner; 3]) -> [i32; 4] {
     [least(along(0)), least(along(1)), most(along(0)), most(along(1))]
 }
 
-/// Snaps a corner (u, v, s) of a slice to the sub-pixel grid of its image.
+/// Rounds a corner (u, v, s) of a triangle in a slice to the sub-pixel grid of the slice's image.
 fn snapped([u, v, s]: [f64; 3], colour: [f64; 3], size: [u32; 2]) -> SliceCorner {
     let steps = f64::from(1 << SUBPIXEL_BITS);
     let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);

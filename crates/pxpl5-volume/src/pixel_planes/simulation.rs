@@ -49,7 +49,7 @@ pub struct SimulatedRow {
     pub processors: u64,
     /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,
-    /// Volumes per second if each volume begins after the previous one has arrived.
+    /// Volumes per second if each volume begins after all tiles of the previous one have arrived.
     pub volumes_hz: f64,
     /// Lower bound of the time for the same messages, given by the slowest part of the machine.
     pub bound: BoundRow,
@@ -243,7 +243,7 @@ impl<'a> Machine<'a> {
         self.begin_next(number, now);
     }
 
-    /// Returns the commands of a slice, region by region, in lists of one message each.
+    /// Returns the commands of a slice, region by region. Each list of commands is one message.
     fn lists(&self, slice: usize) -> Vec<CommandList> {
         let load = &self.traffic.slices[slice].load;
         let regions = load.commands.iter().enumerate();

@@ -146,7 +146,7 @@ fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// Draws a disc around a point of a line. The whole disc has the depth of the point.
+/// Draws a disc around a point of a line, as a round end. The whole disc has the depth of the point.
 fn cap(centre: &Corner, radius: f64, draw: &mut dyn FnMut(&[Corner; 3])) {
     let rim: Vec<Corner> = (0..CAP_TRIANGLES)
         .map(|i| {

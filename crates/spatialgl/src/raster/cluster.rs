@@ -4,7 +4,7 @@
 use super::setup::along;
 use crate::command::CommandBuffer;
 
-/// Number of primitives in a cluster. Neighbours in a mesh are mostly neighbours in its list.
+/// Number of primitives in a cluster. Primitives that are neighbours in a mesh are mostly neighbours in the list.
 const CLUSTER: usize = 8;
 
 /// Number of pixels by which a sphere is enlarged, to allow for rounding.
@@ -57,7 +57,7 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// An iterator over the selected primitives of a cluster, in their order.
+/// An iterator over the selected primitives of a cluster, in the order of drawing.
 pub(crate) struct ReachablePrimitives<'a> {
     rest: u64,
     primitives: &'a [u32],

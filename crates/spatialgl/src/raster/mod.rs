@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// The pixels whose centres lie inside the primitive.
+    /// A primitive covers the pixels whose centres lie inside it.
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the

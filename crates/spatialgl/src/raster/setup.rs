@@ -134,7 +134,7 @@ pub(super) struct Bounds {
 /// A triangle that is ready for sampling.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup {
-    /// Edges opposite to the corners, in the order of the corners.
+    /// Edges of the triangle. Edge i is opposite to corner i.
     pub(super) edges: [Edge; 3],
     /// For each edge, the least value of its function for a sample inside: zero, or the smallest number above zero.
     pub(super) least: [f64; 3],
