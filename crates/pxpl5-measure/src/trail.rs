@@ -59,7 +59,7 @@ pub(crate) struct Trail<'a> {
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
     /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// Start of RENDER on the first renderer, for each picture and surface.
+    /// Earliest start of RENDER on any board, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,

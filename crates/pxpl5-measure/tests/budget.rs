@@ -32,7 +32,7 @@ fn assert_near(found: f64, expected: f64, what: &str) {
     assert!((found - expected).abs() < 1e-6, "{what}: {found} {expected}");
 }
 
-/// Stages inside a pipeline must equal those of its pictures. All other stages have closed forms.
+/// Stages inside a pipeline must equal the stages of its pictures. All other stages have formulas.
 #[test]
 fn stages_from_head_to_light_add_up() {
     let pipelines = [

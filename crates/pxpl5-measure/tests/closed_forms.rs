@@ -1,8 +1,8 @@
-//! Pixel errors of every pipeline, compared with closed forms that share only NTSC's numbers with the program.
+//! Pixel errors of every pipeline, compared with formulas that share only the timing of NTSC with the program.
 //!
 //! With a perfect tracker and constant velocity, a steady rotation is predicted exactly. The remaining error comes from
-//! scan-out: a pixel that lights at t and was drawn for a is rotated by |v| |t - a|. For a sinusoid the prediction
-//! itself is wrong: a straight line through two of its points differs from the sinusoid.
+//! scan-out: a pixel that is lit at time t and was drawn for time a is rotated by |v| |t - a|. For a sinusoid the
+//! prediction itself is wrong: a straight line through two of its points differs from the sinusoid.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Showing};
@@ -83,7 +83,7 @@ enum Measurement {
     At(f64),
 }
 
-/// A run and the data that the closed forms need.
+/// A run and the data that the formulas need.
 struct Run {
     pipeline: &'static str,
     aim: Aim,

@@ -82,7 +82,7 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
     experiment.clone().keep(keep).run().expect("it runs")
 }
 
-/// Returns everything of a report except the time on this computer. Numbers have enough digits to be distinguished.
+/// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
     // A streaming observer knows the latency of translation also of a run that has discarded records.

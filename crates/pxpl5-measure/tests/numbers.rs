@@ -136,8 +136,8 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
 }
 
-/// The report states how many primitives would be in time only if a closed form exists and the number is smaller than
-/// the scene.
+/// The report states the number of primitives that would be in time. It does so only if a formula exists and the number
+/// is smaller than the scene.
 #[test]
 fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
     fn all(experiment: &Experiment) -> u64 {

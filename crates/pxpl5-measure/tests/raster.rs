@@ -1,4 +1,4 @@
-//! A shifted raster, compared with the closed form of a head that rotates steadily about one axis.
+//! A shifted raster, compared with the formula for a head that rotates steadily about one axis.
 //!
 //! A picture is drawn for the middle of its field, at time a. When the beam is at t, the shift is f tan(v (t - a)).
 
@@ -79,7 +79,7 @@ fn places() -> RgbImage {
     RgbImage::from_fn(640, 480, |x, y| Rgb([1 + (x / 256) as u8, x as u8, (y / 2) as u8]))
 }
 
-/// Shifts every pixel of a field, and compares its source with that of the closed form.
+/// Shifts every pixel of a field, and compares its source with the source from the formula.
 fn check(axis: DVec3, field: u64, from: impl Fn(u64, u64, f64) -> [f64; 2]) {
     let outcome = run(axis, Raster::Vdrt);
     let offsets = RasterOffsets::of(&outcome).expect("it is shifted");
@@ -196,8 +196,8 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
 
 /// The head rotates at 1,450 deg/s, and its reports are 100 ms late.
 ///
-/// It turns by at least 145 degrees until a picture begins to light, and by less than 240 degrees until its last pixel.
-/// All content is then behind the eye, which sees 30 degrees to each side.
+/// It turns by at least 145 degrees until the first pixel of a picture is lit, and by less than 240 degrees until the
+/// last pixel is lit. All content is then behind the eye, which sees 30 degrees to each side.
 #[test]
 fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
     let fields = 45;

@@ -1,6 +1,7 @@
-//! Tests of pictures that a device moves to the newest pose, against closed forms of a head that turns or slides steadily.
+//! Tests of pictures that a device moves to the newest pose. Expected values come from formulas for a head that rotates
+//! or slides at a constant speed.
 //!
-//! The tracker is ideal and the predictor exact for such motions, so that the instants of poses alone make errors.
+//! The tracker is ideal and the predictor is exact for such motions, so only the instants of the poses cause errors.
 
 use glam::{DQuat, DVec3};
 use image::RgbImage;
@@ -33,12 +34,12 @@ fn beam(field: u64, row: u64, x: f64) -> f64 {
     (field as f64 * 262.5 + half + 22.0 + row as f64 + (140.0 + x) / 780.0) * LINE_S
 }
 
-/// Focal length of so many pixels over 60 degrees.
+/// Returns the focal length, in pixels, of `width` pixels over 60 degrees.
 fn focal_px(width: f64) -> f64 {
     width / 2.0 / 30f64.to_radians().tan()
 }
 
-/// A head that turns to the left at a steady rate, rad/s.
+/// A head that rotates to the left at a constant rate, in radians per second.
 #[derive(Clone, Copy, Debug)]
 struct Turning(f64);
 
@@ -62,7 +63,7 @@ fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
     head.expect("in range")
 }
 
-/// Pictures of one pose a field, drawn for its middle.
+/// Runs a pipeline that draws each field for one pose, at the instant at which its middle is displayed.
 fn fields(head: Head, scene: &str) -> Outcome {
     let pipeline = (Registry::of_papers().pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
     let scene = Arc::new(builtin(scene).expect("built in"));
@@ -74,12 +75,13 @@ const fn device(by: Warp, every: Every) -> Showing {
     Showing::Reprojected(Reprojection::new(by, every))
 }
 
-/// When a picture of a field is drawn for.
+/// Returns the instant for which the picture of a field is drawn, in seconds.
 fn aim(field: u64) -> f64 {
     (beam(field, 0, 0.0) + beam(field, 239, 639.0)) / 2.0
 }
 
-/// When the pose of a part of a field is predicted for: the middle of the light of its first and last pixel.
+/// Returns the instant for which the pose of a part of a field is predicted, in seconds: halfway between the lighting
+/// of its first and last pixel.
 fn middle_of(every: Every, field: u64, row: u64) -> f64 {
     // Lines of a frame, of which a field lights every second.
     let line = 2 * row + field % 2;
@@ -91,14 +93,14 @@ fn middle_of(every: Every, field: u64, row: u64) -> f64 {
     (beam(field, from, 0.0) + beam(field, to, 639.0)) / 2.0
 }
 
-/// The pixels of a field at which errors are evaluated.
+/// Returns the pixels of a field at which errors are evaluated.
 fn grid() -> impl Iterator<Item = (u64, u64, u64)> {
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let of_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
     (WARM_UP_PERIODS..FIELDS).flat_map(of_field)
 }
 
-/// Returns the place of content after a turn to the left, in pixels from the middle.
+/// Returns the position of content after a rotation to the left, in pixels from the middle.
 fn after(right: f64, up: f64, angle: f64, f: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     let depth = f * cos - right * sin;
@@ -110,7 +112,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Returns the mean distance that content moves from the instant of its pose to its light.
+/// Returns the mean distance, in pixels, that content moves from the instant of its pose until it is lit.
 fn turned_px(rate: f64, every: Every) -> f64 {
     let f = focal_px(640.0);
     mean(grid().map(|(field, row, x)| {
@@ -146,7 +148,8 @@ fn a_shift_is_a_rotation_in_the_middle_of_the_picture_alone() {
     assert!(shift.pixels.mean > 5.0 * turn.pixels.mean, "{} {}", shift.pixels.mean, turn.pixels.mean);
 }
 
-/// The share of 16 x 12 places of each field that come from beyond the edge: f tan(atan(x / f) - a) of x from the middle.
+/// The expected share covers 16 x 12 positions of each field whose source lies beyond the edge: `f tan(atan(x / f) -
+/// a)`, with x from the middle.
 #[test]
 fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
     const RATE: f64 = 8.0;
@@ -175,7 +178,8 @@ fn the_empty_share_is_what_the_turn_brings_from_beyond_the_edge() {
     assert!((found.poses_per_s / (240.0 * 60_000.0 / 1_001.0) - 1.0).abs() < 1e-6, "{}", found.poses_per_s);
 }
 
-/// The content lies on a plane at a distance z before the head that slides along it: what moves in a time t is f v t / z.
+/// The content lies on a plane at a distance z before the head, which slides along the plane. In a time t, the content
+/// moves by f v t / z.
 #[test]
 fn without_depth_a_slide_leaves_f_v_t_by_z_and_with_it_what_a_line_takes() {
     const M_PER_S: f64 = 0.5;
@@ -195,7 +199,7 @@ fn without_depth_a_slide_leaves_f_v_t_by_z_and_with_it_what_a_line_takes() {
     assert!(without > 100.0 * with);
 }
 
-/// A picture a period on one region, so that every picture is drawn for the light of its own period.
+/// Runs a panel display of one region, on which each picture is drawn for the time at which its own period is lit.
 fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
     let config = PanelConfig { width: 128, height: 96, refresh_hz: 30, ..config };
     let machine = MachineConfig { displays: vec![Box::new(config)], ..MachineConfig::small_hmd() };
@@ -204,7 +208,8 @@ fn on_panel(config: PanelConfig, rate: f64) -> Outcome {
     experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("it is small")
 }
 
-/// Returns the error in the middle of a picture whose light comes so long after the instant that it is drawn for.
+/// Returns the error, in pixels, in the middle of a picture that is lit `seconds` after the instant for which it was
+/// drawn.
 fn off_px(seconds: f64, rate: f64) -> f64 {
     // The middle of the middle pixel.
     let [seen_right, seen_up] = after(0.5, -0.5, rate * seconds, focal_px(128.0));
@@ -259,7 +264,7 @@ fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
     assert!(!serde_json::to_string(&outcome.report()).expect("numbers").contains("\"eye\""));
 }
 
-/// VDRT is a device of its own numbers beside what it always was.
+/// VDRT is reported as a device. No pixel is empty, because its picture counts as drawn beyond the edge of the screen.
 #[test]
 fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
@@ -270,7 +275,7 @@ fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
     assert_eq!(outcome.pixel_errors().expect("a head").empty, 0, "its picture goes on beyond the edge");
 }
 
-/// Behind delayed video the tracker's error alone remains: an ideal one has none, whatever the latency.
+/// With delayed video, only the tracker's error remains. An ideal tracker has no error, for any latency.
 #[test]
 fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_latency() {
     let late = TrackerConfig::ideal().with_latency_ps(50_000_000_000);
@@ -282,7 +287,7 @@ fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_lat
     assert!(plain.pixels.mean > focal_px(640.0) * 0.1, "{}: 50 ms of 2 rad/s and more", plain.pixels.mean);
 }
 
-/// Pixels of a picture that have the colour of all of their neighbours, but for a shade.
+/// Returns true if a pixel has nearly the same colour as all of its neighbours.
 fn is_flat(picture: &RgbImage, x: u32, y: u32) -> bool {
     let near = |a: u32, b: u32| picture.get_pixel_checked(a, b).map(|pixel| pixel.0);
     let here = picture.get_pixel(x, y).0;
@@ -319,7 +324,8 @@ fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
     assert!(same as f64 > 0.995 * compared.len() as f64, "{same} of {}; {differs} differed before", compared.len());
 }
 
-/// With depth, at every line and without latency, a machine is as right as the reference that draws every pixel for its own instant.
+/// A device with depth, one pose per line and no latency must be as accurate as the reference, which draws every pixel
+/// for its own instant.
 #[test]
 fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_was_hidden() {
     let sliding = head(Slide::right_at(1.0));

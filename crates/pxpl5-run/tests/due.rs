@@ -81,8 +81,10 @@ fn a_run_within_the_warm_up_says_nothing() {
     }
 }
 
-/// Frames come every second period from 5 on. The fifth frame is swapped in at 13 and due in 12 and 13. With a picture
-/// every period, the ninth period comes later than the fifth picture.
+/// Frames come every second period, beginning with period 5. The fifth frame is swapped in at period 13 and due in
+/// periods 12 and 13.
+///
+/// With a picture in every period, the ninth period comes later than the fifth picture.
 #[test]
 fn the_window_begins_with_the_ninth_period_or_the_fifth_picture_whichever_is_later() {
     for (first, apart, every, expected) in [(5, 2, 2, 12), (2, 1, 1, 8), (0, 2, 2, 9), (20, 10, 10, 51)] {
@@ -162,7 +164,7 @@ proptest! {
         prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
     }
 
-    /// No failure is left out: a picture after the warm-up that was not shown is in the window.
+    /// No failure is left out: a picture after start-up that was not shown lies in the window.
     #[test]
     fn the_window_holds_every_picture_that_was_not_shown(at in WARM_UP_PERIODS..300, periods in 300u64..400) {
         let mut pictures = regular(0, 1, periods, Shown);

@@ -50,7 +50,7 @@ fn assert_ideal(outcome: &Outcome, what: &str) {
     }
 }
 
-/// A field that is drawn in time is shown at the retrace after its begin (TR94), so each field has a picture. With a
+/// A field that is drawn in time is shown at the retrace after its start (TR94), so each field has a picture. With a
 /// backup, the last complete picture replaces a late one.
 #[test]
 fn slats_shows_each_field_a_field_after_it_began() {
@@ -224,8 +224,8 @@ fn full_screen_triangles_are_clipped_before_no_display_and_no_separation_of_eyes
     }
 }
 
-/// Returns the end of RENDER of each frame, over all eyes. Beside it stands the instant at which the frame before is
-/// shown, when the buffer becomes free.
+/// Returns the end of RENDER of each frame, over all eyes, and the instant at which the previous frame is shown. At
+/// this instant the buffer becomes free.
 fn rendered_and_free(outcome: &Outcome) -> Vec<(Time, Time)> {
     let shown = outcome.pictures().iter().map(|picture| (picture.picture.next(), picture.shown_at));
     let stages = outcome.stages();

@@ -91,8 +91,8 @@ fn what_is_kept_changes_nothing_that_is_said() {
     }
 }
 
-/// Counts of a run: the largest numbers of records and of pending events at any stop, all records that passes have
-/// read, all events, and the poses kept at the end.
+/// Returns counts of a run: the largest numbers of records and of pending events at any stop, all records that were
+/// read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
     let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {
@@ -105,7 +105,7 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     [most[0], most[1], outcome.tally().records_read, outcome.record().events(), poses]
 }
 
-/// A page reads recorded messages, and a run for it keeps the records of the last periods.
+/// A live page reads recorded messages, so its run keeps the records of the last periods.
 #[test]
 fn recent_records_of_a_watched_run_do_not_grow_with_it() {
     let most = |fields| {

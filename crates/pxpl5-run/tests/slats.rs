@@ -29,8 +29,8 @@ fn by_picture(outcome: &Outcome) -> BTreeMap<PictureNumber, Vec<Arrival>> {
     pictures
 }
 
-/// TR94: the GP sends all top regions before any bottom region. The order also holds for late top regions, with more
-/// triangles than the limit.
+/// TR94: the graphics processor sends all top regions before any bottom region. The order also holds for late top
+/// regions, with more triangles than the limit.
 #[test]
 fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
     for slats in [Slats::split(), Slats::backup()] {
@@ -53,9 +53,10 @@ fn no_bottom_region_of_a_field_is_copied_before_all_top_ones() {
     }
 }
 
-/// Checks each field that the beam of an eye scans. All of the field comes from the newest picture of its lines whose
-/// top regions had arrived before the retrace. No pixel arrives behind the beam, and no newer picture is written into
-/// the displayed buffer.
+/// Checks each field that the beam of an eye scans. The whole field must come from one picture of its lines: the newest
+/// whose top regions had arrived before the retrace.
+///
+/// No pixel may arrive behind the beam, and no newer picture may be written into the displayed buffer.
 #[test]
 fn with_a_backup_the_last_complete_field_is_shown_and_never_a_torn_one() {
     for scene in ["full-screen:147", "full-screen:160", "full-screen:200", "typical:147", "typical:160", "typical:200"]

@@ -42,7 +42,7 @@ fn the_longest_message_takes_a_fifteenth_of_a_published_region() {
     assert_eq!(record.message_span() * 15, Span::from_us(780));
 }
 
-/// Returns a machine with a display of two ports, one millisecond after the script began.
+/// Returns a machine with a display of two ports, one millisecond after the start of the script.
 fn told(script: &[(u64, Say)]) -> (Machine, [NodeId; 2]) {
     let config = config(vec![Box::new(ScreenConfig::new(2))]);
     let mut machine = Machine::new(&config, 2, pxpl5_renderer::Layout::slats()).expect("valid");

@@ -75,7 +75,7 @@ fn a_run_ends_before_its_end_and_goes_on_from_there() {
     assert_eq!(machine.record().observation().arrivals.len(), 1);
 }
 
-/// At time zero there is a tick of the display, its signal to the first GP, and a poll of three boards.
+/// At time zero there is a tick of the display, its signal to the first graphics processor, and a poll of three boards.
 #[test]
 fn events_are_counted() {
     let mut machine = machine();
@@ -275,7 +275,7 @@ fn what_programs_tell_the_observer_is_observed_and_traced() {
     assert_ne!(run(1), run(2));
 }
 
-/// Only graphics processors take their times from i860 code. The host has no code.
+/// Only graphics processors take their times from i860 code. No code exists for the host.
 #[test]
 fn code_tells_the_time_of_messages_where_it_runs() {
     let busy = |code: Option<CodeVersion>, runs: bool| {

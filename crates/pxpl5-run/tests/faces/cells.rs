@@ -89,7 +89,7 @@ fn joined(record: &Record, size: u32) -> FaceSet {
     all
 }
 
-/// E2: memories that are drawn from one position look like a single memory when the display combines them.
+/// Experiment E2: memories that are drawn from one position look like a single memory when the display combines them.
 #[test]
 fn cells_drawn_from_one_place_are_the_uncut_drawing() {
     for pipeline in [CELLS, WARPED] {

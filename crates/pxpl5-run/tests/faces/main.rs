@@ -30,8 +30,8 @@ use tracking::tracker::TrackerConfig;
 const FULL: FacePipeline = FacePipeline::new(FacePolicy::Full);
 const OBJECTS: FacePipeline = FacePipeline::new(FacePolicy::Objects);
 
-/// Returns a machine with some of its numbers changed. The policies have a threshold of 90/512 degrees and cells of 5
-/// m, on which the expected values of these tests depend.
+/// Returns a machine with changed parameters. The policies have a threshold of 90/512 degrees and cells of 5 m. The
+/// expected values of these tests depend on both.
 fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
     let preset = MachineConfig::preset(preset).expect("listed");
     let mut config = pipeline.adapt(Registry::of_papers().machine_of(preset));
@@ -60,7 +60,7 @@ fn assert_no_faults(record: &Record) {
     assert_eq!(record.display().faults(), (0, None));
 }
 
-/// E1: the latency of rotation does not depend on the number of triangles in a ball.
+/// Experiment E1: the latency of rotation does not depend on the number of triangles in a ball.
 #[test]
 fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
     let run = |pipeline: FacePipeline, n: usize| {
@@ -95,7 +95,7 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
 }
 
-/// The other half of E1: under Rendering Control, the latency of rotation grows with the drawing time.
+/// Second half of experiment E1: under Rendering Control, the latency of rotation grows with the drawing time.
 #[test]
 fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
     let latency = |n: usize| {
@@ -184,7 +184,8 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
     })
 }
 
-/// E8: with slow renderers, the slow memories miss their retraces first, and rotation keeps its latency.
+/// Experiment E8: with slow renderers, the memories that are drawn rarely miss their retraces first. Rotation keeps its
+/// latency.
 #[test]
 fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
     let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(|clock_hz| walk(OBJECTS, clock_hz));

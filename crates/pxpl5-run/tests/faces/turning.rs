@@ -21,7 +21,7 @@ fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
     assert_eq!(outcome.rotation_latencies().len(), 60);
 }
 
-/// Returns a scene with a rectangle that is attached to the head.
+/// The scene has a rectangle that is attached to the head.
 #[test]
 fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
     for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells] {
@@ -45,7 +45,8 @@ fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
     }
 }
 
-/// Returns the loads of a display that latches lines, or pixels. The tracker reports once a field.
+/// A display that latches by line or by pixel gets an orientation for each line, or as many as the host's connection
+/// can carry per line. The tracker reports once per field.
 #[test]
 fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
     use address_recalculation::Latch;
