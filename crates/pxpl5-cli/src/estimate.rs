@@ -72,13 +72,13 @@ const PLANES_BYTES: f64 = 60e6;
 
 /// Memory in bytes of a texel of a cube face.
 const TEXEL: f64 = 10.0;
-/// Memory in bytes of a frame of a walk.
+/// Memory in bytes of one frame, for a walk (frames seen along a path).
 const FRAME: f64 = 3e3;
-/// Memory in bytes of a primitive in the world through which a walk leads.
+/// Memory in bytes of a primitive of the scene, for a walk (frames seen along a path).
 const WALKED: f64 = 2e3;
 /// Seconds to process one texel of a cube face.
 const FACE_S: f64 = 15e-9;
-/// Seconds to process one primitive for one frame of a walk.
+/// Seconds to process one primitive for one frame, for a walk (frames seen along a path).
 const FRAME_S: f64 = 65e-9;
 
 /// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
@@ -175,7 +175,7 @@ mod tests {
         (VolumeWork { slices: 600, samples: 4, ..MIG }, 48.6, 0.56),
     ];
 
-    /// Measured costs of walks, with the same quantities as [`VOLUMES`].
+    /// Measured costs of walks (frames seen along a path), with the same quantities as [`VOLUMES`].
     const WALKS: [(WalkWork, f64, f64); 4] = [
         (WalkWork { frames: 120, primitives: 740, face_texels: 512 }, 36.8, 0.05),
         (WalkWork { frames: 1_800, primitives: 740, face_texels: 512 }, 41.6, 0.13),

@@ -42,7 +42,7 @@ pub(crate) struct LevelsArgs {
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Write only the tables of host time over numbers of triangles and boards to this file.
+    /// Write only the tables of how host time and latency grow with triangles and boards to this file.
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
     #[command(flatten)]

@@ -35,8 +35,8 @@ pub(crate) struct SweepArgs {
     /// Run share I of N disjoint shares.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Run nothing, but write scripts into DIR that submit the sweep to Slurm: an array of tasks with estimated time
-    /// and memory, and a job that joins their rows in --out.
+    /// Run nothing, but write scripts into DIR that submit the sweep to Slurm. They submit an array of tasks with
+    /// estimated time and memory, and a job that joins their rows in --out.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
     slurm: Option<PathBuf>,
     /// Number of tasks in the Slurm array; default: estimated for about a quarter of an hour per task.

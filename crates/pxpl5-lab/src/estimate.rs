@@ -249,7 +249,7 @@ pub enum Study {
     },
 }
 
-/// CPU seconds of the studies, measured with the build profile `dist`: all figures; rankings without and with
+/// CPU seconds of the studies, measured with the build profile `dist`. In order: all figures; rankings without and with
 /// fly-throughs of some frames; figures at all levels, random experiments, and speeds.
 const FIGURES_S: f64 = 35.0;
 const READINGS_S: f64 = 2.0;

@@ -54,7 +54,7 @@ pub enum RigRunError {
     /// The pipeline cannot run on the machine.
     #[error(transparent)]
     Run(#[from] ExperimentError),
-    /// The tracker reported no low point, or the photodiode saw no light.
+    /// The tracker reported no low point of the pendulum, or the photodiode saw no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.
@@ -72,7 +72,7 @@ pub enum RigRunError {
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
-        /// Reason why a step from dark to light does not mark a new frame.
+        /// Reason why a step from dark to bright under the photodiode is not the start of a new frame.
         reason: &'static str,
         /// The pipeline's own definition of the time at which a picture is due.
         definition: &'static str,
@@ -159,7 +159,7 @@ impl Rig {
     }
 }
 
-/// Returns an error for a pipeline whose light under a photodiode does not show when a frame appears.
+/// Returns an error for a pipeline in which a photodiode on the screen cannot tell when a frame appears.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), RigRunError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -220,13 +220,13 @@ struct Photodiode {
     line: u32,
     /// Longest time in picoseconds from the beginning of a period to the beam's pass over the photodiode.
     place_ps: u64,
-    /// Time in picoseconds of each pass of the beam over the photodiode, and true if the pixel was light.
+    /// Time in picoseconds of each pass of the beam over the photodiode, and true if the pixel was bright.
     samples: Vec<(u64, bool)>,
     /// Number of messages that the ring had carried by the end of each period, and true if no message was under way.
     ring: Vec<(u64, bool)>,
 }
 
-/// Minimum mean of red, green and blue of a pixel that counts as light: half the value of a white wall.
+/// Minimum mean of red, green and blue of a pixel that counts as bright: half the value of a white wall.
 const LIGHT: u32 = 128;
 
 impl Photodiode {

@@ -1,4 +1,5 @@
-//! The command `pxpl5 arp compare`. Compares all policies (rules for what is drawn when) and warps on one walk.
+//! The command `pxpl5 arp compare`. Compares all policies (rules for what is drawn when) and warps on one walk of a
+//! viewer through a scene.
 
 use super::run::widths;
 use super::settings::WalkArgs;
@@ -12,7 +13,7 @@ use pxpl5::views::results::csv_table;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all policies and warps on one walk: update rates, draws, triangles, tears, stretch.
+/// Compare all policies and warps on one walk through a scene: update rates, draws, triangles, tears, stretch.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp compare

@@ -30,9 +30,9 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Simulate one walk; print numbers of draws, update rates and the width of the gaps at cuts.
+    /// Simulate one walk through a scene; print numbers of draws, update rates and the width of the gaps at cuts.
     Run(run::RunArgs),
-    /// Compare all policies and warps on one walk.
+    /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),
     /// Compare the papers' figures with an ideal renderer, and draw their pictures.
     Figures(figures::FiguresArgs),

@@ -1,4 +1,4 @@
-//! The command `pxpl5 arp run`, which simulates one walk along a path.
+//! The command `pxpl5 arp run`, which simulates one walk of a viewer along a path.
 
 use super::settings::{WalkArgs, put};
 use crate::error::CliError;
@@ -11,7 +11,7 @@ use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Simulate one walk; print numbers of draws, update rates and the width of the gaps at cuts.
+/// Simulate one walk through a scene; print numbers of draws, update rates and the width of the gaps at cuts.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json
@@ -71,8 +71,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory it has
-/// true or false for an update that was due, shown or missed.
+/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory it has 1
+/// or 0 for an update that was due, shown or missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();

@@ -20,7 +20,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The scene of a walk, and the settings that differ from their defaults.
+/// The scene of a walk (frames seen along a path), and the settings that differ from their defaults.
 #[derive(Args, Debug)]
 pub(super) struct WalkArgs {
     /// A TOML file of settings by path, including `scene`; options override the file.
@@ -67,7 +67,8 @@ const LENS: &str = "arp.lens";
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene and the plan of the walk. Prints a warning for every number outside its documented range.
+    /// Returns the scene and the plan of the walk (frames seen along a path). Prints a warning for every number outside
+    /// its documented range.
     ///
     /// # Errors
     ///
@@ -95,7 +96,8 @@ impl WalkArgs {
         Ok((scene, plan))
     }
 
-    /// Returns an error if the estimated time or memory of `walks` walks exceeds the budget.
+    /// Returns an error if the estimated time or memory of several walks (frames seen along a path) exceeds the budget.
+    /// `walks` is their number.
     ///
     /// # Errors
     ///
@@ -106,7 +108,7 @@ impl WalkArgs {
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
-    /// Returns the display of a walk with the given lens and settings.
+    /// Returns the parameters of the display with cube faces, with the given lens and settings.
     ///
     /// # Errors
     ///

@@ -99,8 +99,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// Returns the mean ratio of a row to the exact clip over some rings around the axis. Rings in which the exact clip
-/// shows nothing are left out.
+/// Returns the brightness of a row relative to the row with exact clipping, as a mean over some rings around the axis.
+/// Rings in which exact clipping shows nothing are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -183,8 +183,8 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Returns a chart of brightness: lit pixels per pixel of radius. It shows the clips that are projected along the
-/// normal.
+/// Returns a chart of brightness: lit pixels per pixel of radius. It has one curve for each clip (way to cut the scene
+/// into slices) that is projected along the normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

@@ -90,7 +90,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
 
 /// Executes the messages of a slave for one frame:
 ///
-/// - The slave receives the frame's view from the host.
+/// - The slave receives the frame's head pose from the host.
 /// - The slave receives permission for EDIT and for TRANSFORM, and reports the end of each.
 /// - For each eye, the slave receives the token of every region and passes it on.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
@@ -134,7 +134,7 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// Executes the messages of one display field on a board under Slats. The board receives the view. It then sends a
+/// Executes the messages of one display field on a board under Slats. The board receives the head pose. It then sends a
 /// chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two chains of
 /// copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {

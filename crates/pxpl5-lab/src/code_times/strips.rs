@@ -24,12 +24,12 @@ const FIELD_PS: u64 = 16_683_333_333;
 /// Memory address at which display lists begin. The commands in messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of order messages: a strip (group of scan lines), a strip with its view, blocks, and a
-/// field between two views. The second number of each pair counts the words before the views.
+/// Sizes in words of four kinds of order messages. They are for a strip (group of scan lines), a strip with a head
+/// pose, blocks, and a field between two head poses. The second number of each pair counts the words before the poses.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
-/// views.
+/// head poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripTimes {
     /// Time to compare one triangle's bounding box with a strip (group of scan lines) that the box does not meet.
@@ -39,16 +39,16 @@ pub struct StripTimes {
     pub entry_ns: f64,
     /// Time to create and send the five windows of a strip (group of scan lines) when no triangle meets them.
     pub windows_ns: f64,
-    /// Time to compute the positions of a triangle in two successive views.
+    /// Time to compute the positions of a triangle on the screen for two successive head poses.
     pub ends_ns: f64,
-    /// Time to skip one triangle that is not near a strip (group of scan lines), when triangles are interpolated
-    /// between two views.
+    /// Time to skip one triangle that is not near a strip (group of scan lines), while triangles are interpolated
+    /// between two head poses.
     pub passed_ns: f64,
     /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
     /// interpolation on the screen, the second for interpolation in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Times to assemble four kinds of order messages: for a strip (group of scan lines), for a strip with a view, for
-    /// blocks, and for a field between two views.
+    /// Times to assemble four kinds of order messages. They are for a strip (group of scan lines), a strip with a head
+    /// pose, blocks, and a field between two head poses.
     pub order_ns: [f64; 4],
 }
 
@@ -81,14 +81,15 @@ struct Measured {
     triangles: f64,
     /// Mean time to search the triangles for a strip (group of scan lines) that no triangle meets.
     search_ns: f64,
-    /// Additional time of each bin entry, measured in strips that triangles meet.
+    /// Additional time of each bin entry, measured in strips (groups of scan lines) that triangles meet.
     entry_ns: f64,
-    /// Time to compute the positions of all triangles in two successive views.
+    /// Time to compute the positions of all triangles for two successive head poses.
     ends_ns: f64,
-    /// Time to compute the commands for an instant between two views, if no triangle is near the strip.
+    /// Time to compute the commands for an instant between two head poses, if no triangle is near the strip (group of
+    /// scan lines).
     passed_ns: f64,
-    /// Times to compute the commands for an instant between two views, if all triangles are near the strip. The first
-    /// number is for interpolation on the screen, the second for interpolation in eye space.
+    /// Times to compute the commands for an instant between two head poses, if all triangles are near the strip (group
+    /// of scan lines). The first number is for interpolation on the screen, the second for interpolation in eye space.
     interpolated_ns: [f64; 2],
 }
 
@@ -123,7 +124,7 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of bin entries and the search time for every strip of one scan line.
+/// Returns the number of bin entries and the search time for every strip. A strip is one scan line here.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;
@@ -152,8 +153,8 @@ fn ends_ns(rig: &mut Rig) -> Result<f64, ProcessorFault> {
     Ok(keeping.run_code(&GpTiming::PAPERS, &mut rig.processor)?.map_or(0.0, ns))
 }
 
-/// Returns the time in nanoseconds to compute the commands of triangles half way between two views. `near` is the range
-/// of lines whose triangles are interpolated.
+/// Returns the time in nanoseconds to compute the commands of triangles half way between two head poses. `near` is the
+/// range of scan lines whose triangles are interpolated.
 fn between_ns(rig: &mut Rig, in_eye_space: bool, near: [i32; 2]) -> Result<f64, ProcessorFault> {
     let [from, to] = views(rig);
     let interpolating = StripInterpolation {

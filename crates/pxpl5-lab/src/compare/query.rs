@@ -64,7 +64,7 @@ pub enum CompareError {
     /// The query has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// The registry marks no pipeline as compared.
+    /// The registry has no pipeline that is to be compared.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
     /// A row in the query does not exist.
@@ -114,8 +114,8 @@ impl CompareQuery {
     /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
     /// number of all runs.
     ///
-    /// The result has a row for every pipeline. If a pipeline cannot run on the machine or shows no picture of the
-    /// scene, its row holds the reason and the number of triangles that the pipeline could draw.
+    /// The result has a row for every pipeline. A pipeline may be unable to run on the machine, or show no picture of
+    /// the scene. Its row then holds the reason, and the number of triangles that the pipeline could draw.
     ///
     /// # Errors
     ///
@@ -298,7 +298,8 @@ impl Comparison {
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 
-    /// Returns true if the evaluation of a row begins in a later display period than that of the others.
+    /// Returns true if the evaluation of this row begins in a later display period than the evaluation of the other
+    /// rows.
     #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)

@@ -181,8 +181,8 @@ impl ExperimentFile {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Provides the contents of a model or recording from memory. They are used wherever a setting names the file
-    /// `name`. Hosts without a file system, such as browsers, need this.
+    /// Provides the contents of a model file or recording from memory. They are used wherever a setting names the file
+    /// `name`. Hosts without a file system, such as browsers, need this function.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());

@@ -130,8 +130,8 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
-/// Measures figure J2: the head's rotation while the beam draws a line. The rotation is measured between two pixels,
-/// and scaled to the full width of the line.
+/// Measures figure J2: the head's rotation while the beam draws a line. The rotation is measured between the first and
+/// the last pixel, and scaled to the duration of the whole line.
 fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;

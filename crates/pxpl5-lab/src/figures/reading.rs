@@ -80,7 +80,7 @@ impl Reading {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
     }
 
-    /// Returns all interpretations: every combination of answers.
+    /// Returns all interpretations of the papers: every combination of answers to the open questions.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::USUAL];
@@ -93,7 +93,7 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Returns the answers of the interpretation in words, in the order of the questions.
+    /// Returns the answers of this interpretation in words, in the order of the questions.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
@@ -104,7 +104,7 @@ impl Reading {
         [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
     }
 
-    /// Returns the answers that differ from those of another interpretation, in words.
+    /// Returns, in words, the answers in which this interpretation differs from another one.
     #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());
@@ -161,7 +161,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns copies of each interpretation, one for each possible answer to one question.
+/// Returns copies of each interpretation, one for each possible answer to one question. `answer` sets an answer in an
+/// interpretation.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

@@ -81,13 +81,13 @@ impl FigureRow {
         }
     }
 
-    /// Returns true if the figure lies outside the values that the model can reach. The unpublished parameters can then
-    /// explain the difference nowhere in their ranges, so a rule of the model is wrong.
+    /// Returns true if no values of the unpublished parameters reproduce the published value. A rule of the model is
+    /// then wrong.
     ///
-    /// The reachable values are the interval of the analytic level, extended on both sides. The extension is the
-    /// distance between `analytic` and `simulated`, because the two levels may differ as much at the ends of the ranges
-    /// as at the presets. The published value is compared with its printed range, or with its last digit if no range is
-    /// printed.
+    /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
+    /// extension is the distance between `analytic` and `simulated`, because the two levels may differ as much at the
+    /// ends of the ranges as at the presets. The published value is compared with its printed range, or with its last
+    /// digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };

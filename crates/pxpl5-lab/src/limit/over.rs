@@ -86,7 +86,7 @@ pub struct OverLimit {
     pub reached: bool,
     /// All tried values in ascending order, each with true if the value reaches the goal.
     pub tried: Vec<(f64, bool)>,
-    /// A value that misses the goal: the one next to the limit, or the best value if all values miss.
+    /// A value that misses the goal: the value next to the limit, or the best value if all values miss.
     pub missed_at: Option<f64>,
     /// Resource that limits the experiment with the value `missed_at`, in words.
     pub because: Option<String>,

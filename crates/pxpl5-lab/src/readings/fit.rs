@@ -27,9 +27,9 @@ pub struct FigureFit {
 /// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The interpretation.
+    /// The interpretation of the papers: its answers to their open questions.
     pub reading: Reading,
-    /// The interpretation in words.
+    /// The interpretation of the papers in words.
     pub words: String,
     /// Fit of each figure, in the order of [`FIGURES`].
     pub figures: Vec<FigureFit>,
@@ -83,9 +83,11 @@ impl FigureFit {
         })
     }
 
-    /// Returns the logarithm of the likelihood of the figure's printed values. The error of the mean has a normal
-    /// distribution with three parts: the printed digits, the error of a mean of 87 samples, and 2 % for the model. The
-    /// logarithm of the ratio of both deviations has a normal distribution with a standard deviation of 0.25.
+    /// Returns the logarithm of the likelihood of the figure's printed values.
+    ///
+    /// The error of the mean has a normal distribution with three parts. These are the printed digits, the error of a
+    /// mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
+    /// distribution with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
         let of_samples = self.published_sd.map_or(0.0, |sd| sd / SAMPLES.sqrt());

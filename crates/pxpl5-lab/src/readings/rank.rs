@@ -96,7 +96,7 @@ fn rounding_percent(fits: &[Fit]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Tests that a bench with a cache shared by all interpretations gives the same fits as a separate bench for each.
+    /// Tests that fits do not depend on the cache of experiments that all interpretations share.
     #[test]
     fn runs_that_readings_share_change_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Value;
 
-/// Function that returns true if a value names a file. Some keys have values of both kinds.
+/// A function that returns true if a value is the name of a file, and not a built-in name.
 type NamesFile = fn(&str) -> bool;
 const KEYS: [(&str, NamesFile); 2] = [("scene", is_file), ("head.motion", is_recording)];
 
