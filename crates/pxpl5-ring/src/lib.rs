@@ -55,7 +55,7 @@
 //! - routing, check words and the layout of the hardware's queues (the overhead of each message stands for their cost)
 //! - the travel time of a stall or an acknowledgement back along the ring
 //! - the hop latency between two messages of different sources to one destination: on rings of more than 16 boards the
-//! second message can begin to arrive before the first has ended
+//!   second message can begin to arrive before the first has ended
 //! - multicast and broken hardware
 //!
 //! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order, first come

@@ -3,19 +3,17 @@
 //!
 //! * A pair is a floating-point instruction, then a core instruction.
 //! * The halves of a pair write different registers, and only one half sets CC. `bc.t` or `bnc.t` is not paired with a
-//! compare.
+//!   compare.
 //! * A delayed branch has no branch in its slot, and the slot of a `call` does not write r1.
 //! * `bla` has two different registers.
 //!
 //! Some working programs break three more rules ([`Rule`]). The assembler reports these as warnings:
 //!
 //! * A `d.` instruction has an address that is a multiple of 8. Other assemblers also accept `d.` in the second word of
-//!   a
-//! pair.
+//!   a pair.
 //! * A pipelined multiply does not have its first source as destination.
 //! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
-//!   a
-//! pipe read such results and ignore them.
+//!   a pipe read such results and ignore them.
 //!
 //! The rules for pairs are checked in address order. The check does not follow jumps into the middle of
 //! dual-instruction code.
