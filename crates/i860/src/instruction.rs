@@ -34,7 +34,7 @@ pub enum Op {
     Flush,
     /// `trap`: takes the instruction trap.
     Trap,
-    /// `lock`: begins an interlocked sequence, during which the bus is locked.
+    /// `lock`: begins an interlocked sequence.
     Lock,
     /// `unlock`: ends an interlocked sequence.
     Unlock,

@@ -9,8 +9,8 @@ use std::sync::Arc;
 /// A shared store of decoded programs with their remembered clocks, for processors with the same freeze rules.
 ///
 /// Several processors can use one store in turn, because decoded code and clocks do not depend on the processor. If one
-/// processor has decoded a program and counted its clocks, the others need not do this again
-/// ([`Cpu::open`](crate::Cpu::open), [`Cpu::close`](crate::Cpu::close)).
+/// processor has decoded a program and counted its clocks, the others reuse both ([`Cpu::open`](crate::Cpu::open),
+/// [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
 pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,

@@ -60,9 +60,9 @@ parameters::parameter_table! {
         branch_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 19b: a bte or btne is taken.
         compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 20: every bri and calli.
+        /// Cost of freeze row 20: a bri or calli is executed.
         indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 21: every st.c, for any control register.
+        /// Cost of freeze row 21: an st.c to any control register is executed.
         control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 22a: the next adder or multiplier operation uses a result of the graphics unit.
         graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";

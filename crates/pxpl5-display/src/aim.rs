@@ -15,8 +15,8 @@ pub struct LightTimes {
     pub last: Time,
 }
 
-/// The instant, within the time at which a picture is shown, for which the view is predicted. All pipelines use the
-/// same choice.
+/// The instant of a [`LightTimes`], the times at which a picture is shown, for which the view is predicted. All
+/// pipelines use the same choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {

@@ -38,8 +38,8 @@ impl Surface {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
 
-    /// Returns the name of the surface for legends that have no room for the title. The name is `left eye` or `right
-    /// eye` for an eye, else the label.
+    /// Returns the name of the surface for legends that have no room for the title. For the picture of an eye the name
+    /// is `left eye` or `right eye`, else the name is the label.
     #[must_use]
     pub fn legend(&self) -> String {
         let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);

@@ -4,7 +4,8 @@ use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board with its event queue. The test supplies the messages and acceptances that other boards would send.
+/// A board with its event queue, a [`TestBench`]. The test supplies the messages and acceptances that other boards
+/// would send.
 #[derive(Debug)]
 pub struct BoardBench {
     /// The board under test with its programs.

@@ -146,7 +146,7 @@ impl Wait {
 }
 
 impl Shared {
-    /// Returns true if an event of this kind can end the wait of a program or of the DMA.
+    /// Returns true if an event of this kind can end the wait of a program, or can let the DMA send its next chain.
     pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
@@ -322,7 +322,7 @@ impl Gp {
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
-    /// Sets the number of bytes of memory that are in use for a purpose, the account.
+    /// Sets the number of memory bytes in use for the purpose `account`.
     ///
     /// # Errors
     ///

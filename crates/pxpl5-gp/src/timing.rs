@@ -185,8 +185,8 @@ parameters::parameter_table! {
         link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
         /// CPU time of the host to send or receive one message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
-        /// Time between successive poses that the host sends without a request. Such poses come from the scene's
-        /// recorded or computed motion. With a tracker, the host sends the tracker's reports instead.
+        /// Time between successive poses that the host sends without a request, if the scene defines the motion of the
+        /// head. With a tracker, the host sends the tracker's reports instead.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
         /// Mean time that the application needs between two frames, from the EDIT of a frame to the next frame. The
         /// time counts if the host waits for EDIT.

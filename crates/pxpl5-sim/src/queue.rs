@@ -271,8 +271,8 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// n fair draws from 100 events are expected to put 100 (1 - 0.99^n) different events first: 47 for 64 seeds, with
-    /// a standard deviation of 3. Seeds with very few or very many set bits are no worse.
+    /// Counts the different first events of 64 shuffled queues of 100 events. Fair draws give 100 (1 - 0.99^64) = 47 on
+    /// average, with a standard deviation of 3. Seeds with very few or very many set bits are no worse.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {

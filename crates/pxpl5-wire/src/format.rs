@@ -19,8 +19,8 @@ pub const COLOUR_BITS: u32 = 8;
 /// Number of fraction bits in the expression of a colour component.
 pub const COLOUR_FRACTION_BITS: u32 = 12;
 
-/// Number of bits of one component of a normal in pixel memory, in two's complement. The value 1.0 is stored as `1 <<
-/// NORMAL_ONE_BITS`.
+/// Number of bits of one component of a normal in pixel memory, in two's complement. The integer
+/// `1 << NORMAL_ONE_BITS` stands for 1.0.
 pub const NORMAL_BITS: u32 = 12;
 
 /// Position of the bit that stands for 1.0 in a normal component: 1.0 is stored as `1 << NORMAL_ONE_BITS`. The range of

@@ -320,8 +320,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the pipe (adder or multiplier) that holds the most urgent value, if the pipe can be pushed. The number
-    /// is the urgency in clocks.
+    /// Returns the adder or the multiplier, whichever pipe holds the most urgent value and can be pushed. The number is
+    /// the urgency in clocks.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
