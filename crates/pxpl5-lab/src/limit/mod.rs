@@ -101,11 +101,7 @@ impl LimitQuery {
         }
     }
 
-    /// Creates a query with the pipeline's own criterion, as stated in its registry entry.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`ExperimentError::Config`] if the built-in registry does not contain the pipeline.
+    /// Creates a query with the pipeline's own criterion, which the registry states.
     pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
         let registry = crate::registry();
         let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
