@@ -32,7 +32,8 @@ pub(super) struct WalkArgs {
     /// Policy that decides which objects are redrawn and when: full, objects or cells; default cells.
     #[arg(long, value_name = "POLICY")]
     policy: Option<String>,
-    /// Cut objects at the borders of cells (cubes of space): on or off; default on with cells, off with objects.
+    /// Cut objects at the borders of cells (square areas of the scene): on or off; default on with cells, off with
+    /// objects.
     #[arg(long, value_name = "ON|OFF")]
     segment: Option<String>,
     /// Function by which the movement of vertices falls off with distance from a cut: none, linear, smoothstep or step;

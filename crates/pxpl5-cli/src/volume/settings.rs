@@ -148,6 +148,10 @@ impl VolumeSettingArgs {
     }
 
     /// Draws the volume, and shows a progress bar.
+    ///
+    /// # Errors
+    ///
+    /// Fails when a setting or the scene is invalid.
     pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
         let scene = self.load_scene()?;
         self.settings.admit(settings, &scene, 1)?;

@@ -254,6 +254,10 @@ impl ExperimentFile {
     }
 
     /// Returns the full path of a key that may be abbreviated.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`FileError::UnknownKey`] with the most similar valid path.
     pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, FileError> {
         keys::canonical(&self.registry, path).ok_or_else(|| FileError::UnknownKey {
             place: place.to_owned(),

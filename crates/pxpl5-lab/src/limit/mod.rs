@@ -102,6 +102,10 @@ impl LimitQuery {
     }
 
     /// Creates a query with the pipeline's own criterion, which the registry states.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ExperimentError::Config`] if the built-in registry does not contain the pipeline.
     pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
         let registry = crate::registry();
         let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
