@@ -42,7 +42,7 @@ const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 /// Bytes that a run must have allocated before its total memory is extrapolated.
 const MIN_EXTRAPOLATED_BYTES: f64 = 50e6;
 
-/// A monitor of the time and memory of one run.
+/// A monitor of the time and memory that one run uses.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     budget: BudgetArgs,
@@ -55,7 +55,7 @@ pub(crate) struct Watch {
 }
 
 impl BudgetArgs {
-    /// Returns a budget from limits, where `None` means no limit.
+    /// Returns a budget with the given limits. `None` means no limit.
     pub(crate) fn of(max_memory: Option<u64>, max_seconds: Option<u64>) -> Self {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }

@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 
 A result is a folder that `pxpl5 run --out` wrote, or its report.json. Pictures are compared where both folders have them.")]
 pub(crate) struct DiffArgs {
-    /// First result.
+    /// First result: a folder of `pxpl5 run --out`, or its report.json.
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// Second result.
+    /// Second result: a folder of `pxpl5 run --out`, or its report.json.
     #[arg(value_name = "B")]
     b: PathBuf,
     /// Leave out numbers that differ by less than this percentage.

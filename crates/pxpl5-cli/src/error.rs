@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 /// Exit code for a wrong command line or experiment file.
 const USAGE: u8 = 2;
-/// Exit code of a valid command that failed.
+/// Exit code of a valid command that could not finish its work.
 const FAILURE: u8 = 1;
 
 /// Exit code when another process is writing into the folder. The same command may succeed later (`EX_TEMPFAIL` of

@@ -62,7 +62,7 @@ const AREAS: f64 = 2.0;
 const SLICE_S: f64 = 30e-9;
 /// Seconds to process one covered pixel.
 const DRAWN_S: f64 = 100e-9;
-/// Seconds to pack and read eight pixels.
+/// Seconds to pack eight pixels of a slice into a byte, and to read it.
 const WORD_S: f64 = 1e-9;
 
 /// Factor on the time if simulated renderers of Pixel-Planes 5 draw the volume.
@@ -84,7 +84,7 @@ const FRAME_S: f64 = 65e-9;
 /// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
 const BUSY: f64 = 2.5;
 
-/// Returns the number of triangles and spheres of a scene.
+/// Returns the number of primitives of a scene: triangles and spheres.
 pub(crate) fn primitives(scene: &Scene) -> u64 {
     (scene.triangles().len() + scene.spheres().len()) as u64
 }

@@ -26,7 +26,7 @@ pub(crate) struct FilmArgs {
     /// The file to write (PNG).
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Eye whose picture is written.
+    /// Eye (left, right or both) whose picture is written.
     #[arg(long, value_enum, default_value_t = Whose::Left)]
     eye: Whose,
     /// Number of the first field in the film.
@@ -44,9 +44,9 @@ pub(crate) struct FilmArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Whose {
-    /// The left eye's picture alone.
+    /// The picture of the left eye alone.
     Left,
-    /// The right eye's picture alone.
+    /// The picture of the right eye alone.
     Right,
     /// The pictures of both eyes side by side, the left eye's picture on the left.
     Both,

@@ -96,7 +96,7 @@ fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     Ok(LevelRecord { date, host: Some(host), ..record? })
 }
 
-/// Converts days since 1 January 1970 to a date of the Gregorian calendar, which repeats every 146,097 days.
+/// Converts days since 1 January 1970 to a date. The Gregorian calendar repeats every 146,097 days.
 fn date_of(days: u64) -> String {
     // Years start in March in this calculation, so that a leap day is the last day of its year.
     let days = days + 719_468;

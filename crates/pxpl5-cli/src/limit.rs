@@ -44,18 +44,19 @@ pub(crate) struct LimitArgs {
     #[arg(long)]
     display: Option<String>,
     /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model
-    /// file that is thinned out evenly; default: full-screen for pipelines that send all triangles to every region,
-    /// typical otherwise.
+    /// file that is thinned out evenly. Default: full-screen for pipelines that send all triangles to every region,
+    /// typical for all others.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
     /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
-    /// Smallest value of --over that is tried; default: 1 for boards, otherwise the smallest that the sources allow.
+    /// Smallest value of --over that is tried; default: for numbers of boards 1, otherwise the smallest value that the
+    /// sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
-    /// Greatest value of --over that is tried; default: the number in the largest preset for boards, otherwise the
-    /// greatest value that the sources allow.
+    /// Greatest value of --over that is tried; default: for numbers of boards the number in the largest preset,
+    /// otherwise the greatest value that the sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,
     /// Goal: at least this many updates per second.
@@ -64,7 +65,7 @@ pub(crate) struct LimitArgs {
     /// Goal: at most this mean latency, in fields.
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
-    /// Fields simulated for each number of triangles; default: enough for a steady state of the pipeline.
+    /// Fields simulated for each number of triangles; default: enough to reach a steady state of the pipeline.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(0, 10_000_000))]
     fields: Option<u64>,
     /// Level of modelling: analytic, transaction or cycle; default transaction.

@@ -50,14 +50,14 @@ const TIME_MARGIN: f64 = 5.0;
 const MEMORY_MARGIN: f64 = 2.0;
 /// Seconds to merge one row, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_S: f64 = 40e-6;
-/// Bytes held for one row while merging, rounded up (docs/sweeps.md, "A million points").
+/// Memory in bytes held for one row while rows are merged, rounded up (docs/sweeps.md, "A million points").
 const MERGE_ROW_BYTES: f64 = 16.0;
-/// Bytes held for the files of one task while merging, rounded up.
+/// Memory in bytes held for the files of one task while rows are merged, rounded up.
 const MERGE_TASK_BYTES: f64 = 32e3;
 /// Memory in bytes of the merging process without rows, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
-/// Estimated cost of a sample of points of a sweep.
+/// Estimated cost of a sweep, from a sample of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
     /// Number of points of the whole sweep.

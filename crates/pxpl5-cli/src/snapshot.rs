@@ -37,7 +37,7 @@ pub(crate) struct SnapshotArgs {
 pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
     pub(crate) threads: Option<u64>,
-    /// Optimizations that are disabled.
+    /// Optimizations of the simulator that are disabled.
     pub(crate) without: &'a [Optimization],
     /// Observations that are kept in the outcome.
     pub(crate) keep: Keep,
@@ -169,7 +169,8 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// Returns the snapshot of `--restore` and its name, and checks that the snapshot lies within the run.
+    /// Returns the snapshot that `--restore` names, with its file name. Checks that the snapshot's field lies within
+    /// the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let snapshot = self.read(path)?;

@@ -32,7 +32,7 @@ pub(crate) struct SweepArgs {
     /// Keep the finished points and run only the others.
     #[arg(long)]
     resume: bool,
-    /// Run share I of N disjoint shares.
+    /// Run only share I of N disjoint shares of the points.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
     /// Run nothing, but write scripts into DIR that submit the sweep to Slurm. They submit an array of tasks with
@@ -42,7 +42,7 @@ pub(crate) struct SweepArgs {
     /// Number of tasks in the Slurm array; default: estimated for about a quarter of an hour per task.
     #[arg(long, value_name = "N", requires = "slurm", value_parser = whole::<u64>(1, 1_000_000))]
     tasks: Option<u64>,
-    /// Number of points simulated in parallel; default: one for each core, and one in a task of Slurm.
+    /// Number of points simulated in parallel; default: one for each core, but only one in a Slurm task.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     /// Set any key of the experiment file for all points; may be repeated.
@@ -121,7 +121,7 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// Returns the warnings of the plans at the first and the last point.
+/// Returns the warnings about the experiments at the first and the last point of the sweep.
 fn supposed(sweep: &Sweep) -> Vec<String> {
     let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();

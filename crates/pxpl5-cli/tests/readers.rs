@@ -73,7 +73,7 @@ const WORDS: [&str; 28] = [
     "#",
 ];
 
-/// Returns a file with one to six random mutations.
+/// Returns a copy of a file with one to six random mutations.
 fn damaged(file: &[u8], others: &[(String, Vec<u8>)], numbers: &mut Numbers) -> Vec<u8> {
     let mut bytes = file.to_vec();
     for _ in 0..=numbers.below(6) {

@@ -30,7 +30,7 @@ const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 /// Numbers of the figures in TR94 that show fly-throughs.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
-/// Mean and standard deviation of a latency.
+/// Mean and standard deviation of the latency in one figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Number of the figure, as in [`FIGURES`].

@@ -70,9 +70,9 @@ const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 /// band would do.
 const CLIPPED_M: f32 = 2.0;
 
-/// Number of triangles that Slats transforms at a time (published in TR94).
+/// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).
 const CLUMP: usize = 30;
-/// Number of clumps measured in each scene.
+/// Number of clumps (groups of triangles) measured in each scene.
 const CLUMPS: usize = 20;
 
 /// Number of additional edits (matrix replacements) in a message, from which the time of one edit follows. The replaced
@@ -299,7 +299,7 @@ fn samples(version: CodeVersion, of: CodeUse, scene: &str, boards: usize) -> Res
     measured(of, Rig::of_triangles(version, scene, boards)?, true, sample)
 }
 
-/// Returns the samples of a scene's spheres, or no samples if the scene has none.
+/// Returns one sample for each pass over a scene's spheres, or no samples if the scene has none.
 fn sphere_samples(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Vec<SphereSample>, ExperimentError> {
     let rig = Rig::new(version, scene, BOARDS)?;
     if rig.share.counts().spheres == 0 { Ok(Vec::new()) } else { measured(of, rig, true, sphere_sample) }

@@ -110,15 +110,16 @@ const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
-/// Slowdown factor on a computer that is busy with other work. Assumed. The four runs of the test below, on two busy
-/// cores, took 1.3 to 12 times as long as the estimate on an idle core.
+/// Slowdown factor of a simulation on a computer that is busy with other work. Assumed. The four runs of the test
+/// below, on two busy cores, took 1.3 to 12 times as long as the estimate for an idle core.
 const BUSY: f64 = 2.5;
 
 /// Duration of an NTSC field in seconds. Estimates use this value for every display.
 const NTSC_FIELD_S: f64 = 16.683_333e-3;
 /// Seconds to send a word over the ring. Estimates use this value for every machine.
 const WORD_S: f64 = 50e-9;
-/// Seconds to transform a primitive on a graphics processor. Estimates use this value for every machine.
+/// Seconds that a simulated graphics processor takes to transform a primitive. Estimates use this value for every
+/// machine.
 const TRANSFORM_S: f64 = 21.7e-6;
 /// Number of words sent with each block of pixels, in addition to its pixels.
 const BLOCK_WORDS: f64 = 16.0;

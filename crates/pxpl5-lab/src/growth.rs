@@ -25,7 +25,7 @@ pub struct Point {
     pub host_ms: f64,
     /// Mean latency of a frame in display fields.
     pub latency_fields: f64,
-    /// Frames per second of simulated time, or 0 for fewer than two frames.
+    /// Number of frames per second of simulated time, or 0 for fewer than two frames.
     pub updates_hz: f64,
 }
 
@@ -48,7 +48,7 @@ const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 /// Number of frames that a run must be long enough to show.
 const FRAMES: u64 = 30;
 
-/// Returns the number of display periods in which [`FRAMES`] stereo frames are shown.
+/// Returns the number of display periods that a run needs to show [`FRAMES`] stereo frames.
 fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError> {
     let slaves = config.n_gps as u64 - 1;
     let renderers = config.n_renderers as u64;
@@ -176,7 +176,7 @@ fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), Strin
     Ok((latencies.collect(), outcome.report().updates_hz.unwrap_or_default()))
 }
 
-/// Returns the exponent of a power law: the slope of the straight line through the logarithms of the points.
+/// Returns the exponent of a power law fitted to points: the slope of a straight line through their logarithms.
 #[must_use]
 pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();

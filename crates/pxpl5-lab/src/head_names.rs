@@ -44,7 +44,7 @@ pub enum MotionError {
         "`{found}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
     )]
     NoPath {
-        /// Name of the motion.
+        /// Name of the motion, as given by the user.
         found: String,
     },
     /// The file of a recorded head motion cannot be opened.

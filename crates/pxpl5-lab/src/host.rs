@@ -54,7 +54,8 @@ impl Host for Workstation {
     }
 }
 
-/// A pool of threads that compute pixels. At the end of a run the simulating thread helps to empty the queue.
+/// A pool of threads that compute pixels. At the end of a run the simulating thread helps to empty the queue of
+/// regions.
 #[derive(Debug)]
 struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,

@@ -41,7 +41,7 @@ pub struct Variation {
     pub value: u64,
     /// Minimum and maximum value of the parameter that the sources allow.
     pub range: (u64, u64),
-    /// Provenance of the value: derived or assumed, never published.
+    /// Provenance of the parameter's value in the preset: derived or assumed, never published.
     pub standing: Standing,
 }
 
@@ -57,7 +57,7 @@ pub struct Effect {
     pub elasticity: f64,
 }
 
-/// Interval of a figure that follows from the ranges of all parameters.
+/// Interval of a figure's value that follows from the ranges of all unpublished parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// Number of the figure, as in [`FIGURES`].

@@ -42,7 +42,7 @@ pub enum ManifestError {
     /// The manifest's file cannot be read.
     #[error("{path}: cannot be read: {reason}")]
     Io {
-        /// Path of the manifest.
+        /// Path of the manifest's file.
         path: String,
         /// Reason given by the operating system.
         reason: String,

@@ -1,5 +1,5 @@
-//! Parallel execution of independent runs on all threads of the host. Results keep the order of the inputs. Runs may
-//! be nested.
+//! Parallel execution of independent runs on all threads of the host. Results keep the order of the inputs. A run may
+//! start further parallel runs.
 
 use rayon::prelude::*;
 
@@ -12,7 +12,7 @@ pub(crate) fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -
     items.par_iter().with_max_len(1).map(&run).collect()
 }
 
-/// Executes both closures, in parallel if a thread is free.
+/// Executes two closures, in parallel if a thread is free, and returns both results.
 pub(crate) fn both<A: Send, B: Send>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B + Send) -> (A, B) {
     rayon::join(one, other)
 }

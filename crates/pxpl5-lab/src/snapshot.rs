@@ -52,7 +52,7 @@ pub struct Snapshot {
     pub experiment: String,
 }
 
-/// Error of a snapshot that cannot be used.
+/// Error that makes a snapshot unusable.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SnapshotError {
@@ -105,7 +105,7 @@ pub enum SnapshotError {
         what: &'static str,
         /// Value in the saved snapshot.
         expected: String,
-        /// Value in the repeated run.
+        /// Value of this quantity in the repeated run.
         found: String,
     },
 }
@@ -234,7 +234,7 @@ fn foreign(file: &str, reason: String) -> SnapshotError {
     SnapshotError::Foreign { file: file.to_owned(), reason }
 }
 
-/// A snapshot with its checksum, as written to the file.
+/// A snapshot with its checksum, in the form that is written to the file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]

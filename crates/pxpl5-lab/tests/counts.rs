@@ -29,7 +29,7 @@ fn pipelines() -> Vec<&'static str> {
     registry().pipelines().iter().map(|entry| entry.name).collect()
 }
 
-/// Numbers of triangles from a light load to far more than any pipeline of the papers draws in time.
+/// Numbers of triangles, from a small load to far more than any pipeline of the papers draws in time.
 const LOADS: [u32; 9] = [1, 4, 16, 64, 110, 150, 400, 1_000, 3_000];
 
 /// Returns the allowed difference between the shares of late pictures at two loads.

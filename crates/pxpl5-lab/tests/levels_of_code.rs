@@ -1,4 +1,4 @@
-//! Tests that the transaction level agrees with the cycle level if its table holds the times of executed code.
+//! Tests that the transaction level agrees with the cycle level, if the timing table holds the times of executed code.
 
 use pxpl5_lab::figures::Bench;
 use pxpl5_lab::levels::deviation_percent;

@@ -99,7 +99,7 @@ fn a_pipeline_that_needs_interlace_says_so_by_name() {
     }
 }
 
-/// Returns the raster of a plan with a head.
+/// Returns the raster of a plan whose head settings are given as text.
 fn raster(text: &str) -> Raster {
     let text = format!("head.motion = \"pan:10\"\n{text}");
     let plan = plan(&text);

@@ -39,7 +39,7 @@ enum ArpCommand {
     /// Rank the interpretations of the questions that the paper leaves open about table 1; each rate is left out in
     /// turn.
     Interpretations(interpretations::InterpretationsArgs),
-    /// Print the face and the texels that a pixel shows at an orientation of the head.
+    /// Print the cube face and the texels that a pixel shows at an orientation of the head.
     Texel(texel::TexelArgs),
 }
 

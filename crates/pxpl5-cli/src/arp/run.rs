@@ -23,9 +23,10 @@ use std::path::{Path, PathBuf};
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the faces of all memories and
-    /// the eye's view through its lens and (up to 170 degrees) without a lens. Other pictures show the memory chosen
-    /// at each pixel, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
+    /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the cube faces of all display
+    /// memories, and what the eye sees through its lens and (up to 170 degrees) without a lens. Other pictures show the
+    /// memory chosen at each pixel, errors, cells from above, cuts as wires, and updates. The last ones show the scene
+    /// torn at cuts, warped, and without cuts.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.

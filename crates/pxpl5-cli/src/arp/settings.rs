@@ -29,13 +29,15 @@ pub(super) struct WalkArgs {
     /// A built-in scene with a path (gallery, gallery:full); default gallery.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
-    /// Policy that decides what is drawn when: full, objects or cells; default cells.
+    /// Policy that decides which objects are redrawn and when: full, objects or cells; default cells.
     #[arg(long, value_name = "POLICY")]
     policy: Option<String>,
-    /// Cut objects at the borders of cells: on or off; default on with cells, off with objects.
+    /// Cut objects at the borders of cells (square areas of the scene): on or off; default on with cells, off with
+    /// objects.
     #[arg(long, value_name = "ON|OFF")]
     segment: Option<String>,
-    /// Falloff of the movement of vertices near cuts: none, linear, smoothstep or step; default linear.
+    /// Function by which the movement of vertices falls off with distance from a cut: none, linear, smoothstep or step;
+    /// default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
     /// Unit of scan-out before which the head's orientation is read: field, line or pixel; default field.

@@ -7,7 +7,7 @@ use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_cha
 use pxpl5::views::results::csv_table;
 use serde_json::Value;
 
-/// Returns the names and contents of all files.
+/// Returns the names and contents of all CSV and SVG files of a comparison.
 pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
     [
         ("rows.csv", rows_csv(comparison)),

@@ -5,7 +5,7 @@ use pxpl5::Cause;
 use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
 
-/// Name, unit and width in characters of each column.
+/// Name of each column, its unit, and its width in characters.
 const COLUMNS: [(&str, &str, usize); 14] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),

@@ -19,7 +19,7 @@ pub(super) enum Command {
     Show(Pane),
     /// Shows the state of one board.
     ShowBoard(Board),
-    /// Sets a breakpoint at a label or address, or lists all breakpoints if none is given.
+    /// Sets a breakpoint at a label or address. Without one, lists all breakpoints.
     Break(Option<String>),
     Delete(String),
     Registers(Board),
@@ -57,7 +57,7 @@ pub(super) enum Pane {
 }
 
 impl Pane {
-    /// All panes with their names, in screen order.
+    /// All panes (parts of the debugger's screen) with their names, in screen order.
     pub(super) const ALL: [(&'static str, Self); 5] = [
         ("time", Self::Time),
         ("boards", Self::Boards),

@@ -24,11 +24,11 @@ pub(crate) struct I860Args {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Assemble a source file and list words, addresses and source lines.
+    /// Assemble a source file, and list words, addresses and source lines.
     Asm {
         /// Assembler source.
         file: PathBuf,
-        /// Address of the first byte.
+        /// Address at which the first byte of the program lies.
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
         /// Write the bytes to this file instead of listing them.
@@ -41,18 +41,18 @@ enum Command {
     Disasm {
         /// Binary file.
         file: PathBuf,
-        /// Address of the first byte.
+        /// Address at which the first byte of the program lies.
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
     },
-    /// Assemble (FILE.s) or load (any other file) and run; print clocks by address and by cause, registers and
-    /// memory.
+    /// Assemble (FILE.s) or load (any other file) a program and run it; print clocks by address and by cause, registers
+    /// and memory.
     ///
     /// A place is a label of the program, an address, or a label with an offset such as table+8.
     Run {
         /// Assembler source ending in .s, or a binary file.
         file: PathBuf,
-        /// Address of the first byte.
+        /// Address at which the first byte of the program lies.
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
         /// First instruction: a label or an address; default: label `start`, or the first byte.
@@ -64,11 +64,11 @@ enum Command {
         /// Maximum number of instructions to execute.
         #[arg(long, default_value_t = 10_000_000)]
         budget: u64,
-        /// Bytes of memory from address 0, at most 1 GiB.
+        /// Size of the memory in bytes, from address 0, at most 1 GiB.
         #[arg(long, default_value = "0x800000", value_parser = memory)]
         memory: u32,
-        /// Show memory from a place on, PLACE or PLACE:WORDS; may be repeated; default: the words that the run
-        /// changed.
+        /// Show the memory that begins at this place, PLACE or PLACE:WORDS; may be repeated; default: the words that
+        /// the run changed.
         #[arg(long, value_name = "PLACE[:WORDS]")]
         show: Vec<String>,
         /// Print one JSON object.

@@ -49,7 +49,7 @@ fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     Err(place.refused(&path, &"its links lead in a circle"))
 }
 
-/// Returns true if `found` is the same file, pipe or device as standard output.
+/// Returns true if `found` describes the same file, pipe or device as standard output.
 #[cfg(unix)]
 fn is_standard_output(found: &std::fs::Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;

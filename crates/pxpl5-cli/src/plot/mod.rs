@@ -43,7 +43,7 @@ pub(crate) struct PlotArgs {
     /// Draw a separate curve for each value, or combination of values, of these columns.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     by: Vec<String>,
-    /// Take the mean over these columns and draw its interval as a band.
+    /// Average over these columns, and draw the interval of the mean as a band.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
     band: Vec<String>,
     /// Use only rows with this value in this column; may be repeated.

@@ -11,9 +11,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Names of the columns to plot, by role.
 #[derive(Clone, Debug)]
 pub(super) struct Question {
-    /// Column on the x axis.
+    /// Column whose values are on the x axis.
     pub(super) x: String,
-    /// Column on the y axis.
+    /// Column whose numbers are on the y axis.
     pub(super) y: String,
     /// Columns that separate the curves. Each combination of their values gives one curve.
     pub(super) by: Vec<String>,
@@ -31,7 +31,7 @@ pub(super) struct Group {
     /// Values of the columns `Question::by`, as text.
     pub(super) by: Vec<String>,
     pub(super) x: Value,
-    /// Number of rows with a number in the y column.
+    /// Number of rows that have a number in the y column.
     pub(super) n: usize,
     /// Number of rows without a number in the y column, because the run failed or nothing was evaluated.
     pub(super) missing: usize,
@@ -132,7 +132,7 @@ impl Question {
     }
 }
 
-/// Returns a value as text without quotes.
+/// Returns a JSON value as text without quotes.
 pub(super) fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

@@ -57,7 +57,7 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Returns the names of the listed files.
+    /// Returns the names of the files that the manifest lists.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.iter().flat_map(Manifest::names)
     }

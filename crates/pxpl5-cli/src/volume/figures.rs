@@ -26,10 +26,10 @@ pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Fail if this file differs from the document of all figures.
+    /// Write the document of all figures to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Compare the document with this file.
+    /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
     /// Write the redrawn figures 4 to 12 into this folder.

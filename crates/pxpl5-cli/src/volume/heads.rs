@@ -24,10 +24,10 @@ pub(super) struct HeadArgs {
     /// Latency of the head-mounted display, ms; default: the estimated latency of the volume itself.
     #[arg(long, value_name = "MS", requires = "head", allow_negative_numbers = true)]
     latency: Option<f64>,
-    /// Length of the motion, seconds.
+    /// Duration of the head's motion, seconds.
     #[arg(long, value_name = "S", requires = "head", default_value_t = 2.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Number of pictures of the film; errors are evaluated at eight times as many instants.
+    /// Number of pictures in the film; errors are evaluated at eight times as many instants.
     #[arg(long, value_name = "N", requires = "head", default_value_t = 24, value_parser = whole::<u32>(2, 2000))]
     frames: u32,
 }

@@ -23,7 +23,7 @@ struct EyeArgs {
     /// Direction of the eye above the horizon, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 25.0, allow_negative_numbers = true)]
     elevation: f64,
-    /// Distance of the eye from the middle of the display, in radii of the display.
+    /// Distance from the eye to the middle of the display, in radii of the display.
     #[arg(long, value_name = "RADII", default_value_t = 4.0, allow_negative_numbers = true)]
     distance: f64,
     /// Width and height of the picture, pixels.
@@ -52,7 +52,7 @@ pub(super) struct ViewArgs {
     volume: VolumeSettingArgs,
     #[command(flatten)]
     eye: EyeArgs,
-    /// Show the colours before halftoning.
+    /// Show the colours as they are before halftoning.
     #[arg(long)]
     undithered: bool,
     /// Brightness of one lit pixel of one slice, in units of 1/255; default: 98 % of the picture stays below white.
@@ -76,10 +76,10 @@ pub(super) struct FilmArgs {
     volume: VolumeSettingArgs,
     #[command(flatten)]
     eye: EyeArgs,
-    /// Number of pictures of the turn.
+    /// Number of pictures in one turn around the volume.
     #[arg(long, value_name = "N", default_value_t = 72, value_parser = whole::<u32>(1, 10_000))]
     frames: u32,
-    /// Number of pictures a second.
+    /// Number of pictures per second in the film.
     #[arg(long, value_name = "HZ", default_value_t = 24, value_parser = whole::<u16>(1, 1000))]
     rate: u16,
     /// The file to write (PNG).

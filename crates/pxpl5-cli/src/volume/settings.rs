@@ -39,7 +39,7 @@ pub(super) struct SettingOptions {
     /// default hyperbolic:0.25.
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
-    /// Projection onto a slice: orthographic, perspective or jittered; default jittered.
+    /// Projection of the scene onto a slice: orthographic, perspective or jittered; default jittered.
     #[arg(long, value_name = "PROJECTION")]
     projection: Option<String>,
     /// Seed of the jitter; default 1.
@@ -51,18 +51,18 @@ pub(super) struct SettingOptions {
     /// Part of a primitive that is drawn: sampled or connected (beyond the paper); default sampled.
     #[arg(long, value_name = "COVERAGE")]
     coverage: Option<String>,
-    /// Slices that are drawn: each, or mirror (half of them, beyond the paper); default each.
+    /// Slices that are drawn: each slice, or mirror (half of the slices, beyond the paper); default each.
     #[arg(long, value_name = "STROBES")]
     strobes: Option<String>,
-    /// Renderer of the volume: host, or pixel-planes (beyond the paper; hyperbolic clip and orthographic projection
-    /// alone); default host.
+    /// Renderer of the volume: host or pixel-planes; default host. pixel-planes is beyond the paper, and supports only
+    /// the hyperbolic clip and the orthographic projection.
     #[arg(long, value_name = "RENDERER")]
     on: Option<String>,
     /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or
     /// gpu.readback_mb_s=400; docs/volumetric.md lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
-    /// Number of worker threads; default: one for each core.
+    /// Number of worker threads of the host; default: one for each core.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
     #[command(flatten)]
@@ -147,7 +147,7 @@ impl VolumeSettingArgs {
         Ok(scene)
     }
 
-    /// Draws the volume with a progress bar.
+    /// Draws the volume, and shows a progress bar.
     ///
     /// # Errors
     ///

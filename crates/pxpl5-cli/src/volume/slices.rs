@@ -36,7 +36,7 @@ pub(super) struct SliceArgs {
     slice: u32,
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Part of the slice that is shown.
+    /// Form in which the slice is shown.
     #[arg(long, value_enum, default_value_t = Part::Both)]
     show: Part,
     /// The file to write (PNG).
@@ -46,11 +46,11 @@ pub(super) struct SliceArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Part {
-    /// Before and after halftoning, side by side.
+    /// The slice before and after halftoning, side by side.
     Both,
-    /// Before halftoning, with all 256 levels.
+    /// The slice before halftoning, with all 256 levels.
     Before,
-    /// After halftoning, as the projector shows the slice.
+    /// The slice after halftoning, as the projector shows it.
     After,
     /// The tiles of the slice, with occupied tiles marked.
     Tiles,

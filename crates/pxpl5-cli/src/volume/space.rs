@@ -12,7 +12,7 @@ use toml::{Table, Value};
 /// Keys of the file that are not settings of a volume.
 const OWN: [&str; 5] = ["title", "scene", "triangles", "measure", "sweep"];
 
-/// Quantities measured by default.
+/// Quantities of a volume that are measured by default.
 const MEASURED: [&str; 6] = [
     "fragments_accepted",
     "tile_occupancy_percent",
@@ -26,7 +26,7 @@ const MEASURED: [&str; 6] = [
 #[derive(Clone, Debug)]
 pub(super) struct VolumeSpace {
     pub(super) title: Option<String>,
-    /// Paths of the measured numbers in the report.
+    /// Paths of the measured quantities in the JSON report.
     pub(super) measure: Vec<String>,
     /// Settings that all points share, including `scene` and `triangles`.
     pub(super) settings: BTreeMap<String, Value>,

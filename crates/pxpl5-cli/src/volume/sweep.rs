@@ -46,7 +46,7 @@ pub(super) struct SweepArgs {
     /// Keep the finished points and draw only the others.
     #[arg(long)]
     resume: bool,
-    /// Draw share I of N disjoint shares.
+    /// Draw only share I of N disjoint shares of the points.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
     /// Number of worker threads for each volume; default: one for each core. Volumes are drawn one after the other.

@@ -11,7 +11,7 @@ use tracking::predict::{PredictorConfig, PredictorKind, Training};
 /// Result of an experiment with one predictor.
 #[derive(Clone, Debug, Serialize)]
 pub struct PredictorError {
-    /// Predictor between tracker and pipeline.
+    /// Predictor that extrapolates the tracker's reports.
     pub kind: PredictorKind,
     /// Parameters of the predictor during the run. `None` if the run failed.
     pub numbers: Option<PredictorConfig>,

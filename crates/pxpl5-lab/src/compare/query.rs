@@ -72,7 +72,7 @@ pub enum CompareError {
     Row {
         /// Names of all rows, separated by commas.
         expected: String,
-        /// Name in the query.
+        /// Name of the row in the query.
         found: String,
         /// Name of the existing row that is most similar to the name in the query.
         nearest: String,
@@ -198,7 +198,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns a plan of the first row, to check the shared settings.
+    /// Returns the plan of the first row with the first seed, to check the shared settings.
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
         let first = compared_pipelines.first().ok_or(CompareError::NoPipeline)?;

@@ -87,7 +87,7 @@ pub struct CauseShare {
 pub struct PredictorMean {
     /// Predictor that replaced the row's own predictor.
     pub kind: PredictorKind,
-    /// Mean error in pixels. NaN if no pixel was evaluated.
+    /// Mean error on the screen in pixels. NaN if no pixel was evaluated.
     pub mean_px: f64,
 }
 

@@ -91,7 +91,7 @@ impl HeadChoice {
         self.numbers.clone()
     }
 
-    /// Returns the keys of the head with their values.
+    /// Returns the keys of the head's settings with their values.
     pub(crate) fn settings(&self) -> Vec<(String, Value)> {
         let filter = if self.head.is_tuned() { "tuned" } else { "given" };
         let mut all: Vec<(String, Value)> = [
@@ -138,7 +138,7 @@ fn moving(
     Ok(Arc::new(walk(name, &path).map_err(|error| refused(file, "head.motion", &error))?))
 }
 
-/// Reads the options of a recording: columns, axes and the behaviour at its end.
+/// Reads the options for replaying a recording: columns, axes and the behaviour at its end.
 fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
     let mut columns = Columns::default();
     for (path, setting) in &file.settings {

@@ -94,7 +94,7 @@ impl ExperimentFile {
         Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new(), contents }
     }
 
-    /// Returns the registry of the pipelines and displays that the file may name.
+    /// Returns the registry of the pipelines and displays that the file can name.
     #[must_use]
     pub const fn registry(&self) -> &Arc<Registry> {
         &self.registry
@@ -253,7 +253,7 @@ impl ExperimentFile {
         Ok(())
     }
 
-    /// Returns the full path of a key.
+    /// Returns the full path of a key that may be abbreviated.
     ///
     /// # Errors
     ///
@@ -331,7 +331,7 @@ fn place(text: &str, name: &str, at: usize) -> String {
     format!("{name}, line {}", line(text, at))
 }
 
-/// Converts an error of the TOML parser.
+/// Converts an error of the TOML parser to a [`FileError`] with file name and line.
 fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
     let at = error.span().map_or(0, |span| span.start);
     FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }

@@ -15,7 +15,7 @@ pub struct MotionChoice {
     pub sway: Option<f64>,
 }
 
-/// A path of the head around the scene's centre.
+/// A path of the head relative to the scene's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathChoice {
     /// The head stands still in front of the scene.
@@ -37,7 +37,7 @@ pub enum PathChoice {
     },
     /// The head stays in front of the scene and turns.
     Pan {
-        /// Rate of turn in degrees per second.
+        /// Rate of the head's turn in degrees per second.
         deg_per_s: f64,
     },
 }

@@ -71,7 +71,7 @@ pub struct Plan {
     pub registry: Arc<Registry>,
     /// Pipeline, built from the settings that it reads from the file.
     pub pipeline: Arc<dyn Pipeline>,
-    /// Criterion by which the largest number of triangles drawn in time is found.
+    /// Criterion for searching the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
     /// Machine: a preset, adapted by the pipeline, with the parameters of the file.
     pub machine: MachineConfig,
@@ -79,11 +79,11 @@ pub struct Plan {
     pub scene: SceneChoice,
     /// Number of display fields to simulate; default 120.
     pub fields: u64,
-    /// Seed of the head motion; default 1.
+    /// Seed of the random head motion; default 1.
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
-    /// Head with its tracker. `None` for the scene's own motion without tracking delay.
+    /// Head with its tracker. `None` if the head moves as the scene says, without tracking delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display that the viewer wears.
     pub hmd: Hmd,

@@ -10,8 +10,8 @@ use tracking::tracker::{HostLine, TrackerConfig};
 /// Prefix of every parameter's path.
 const PREFIX: &str = "tracking.";
 
-/// Tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in front of the
-/// filters.
+/// Names of the tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in
+/// front of the filters.
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
 /// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the

@@ -25,7 +25,7 @@ pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 /// The cached value of one key. `None` until the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// The cached values of all requested keys.
+/// The cached values of all keys that were requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
 /// The cache of scenes, loads, measurements and results.
@@ -78,7 +78,7 @@ impl Applications {
         find_or_compute(&self.summaries, key, || make().map(Arc::new))
     }
 
-    /// Returns the result of a search for a limit. `make` runs the search at the first request.
+    /// Returns the result of a search for the largest number of triangles. `make` runs the search at the first request.
     pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
         find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }

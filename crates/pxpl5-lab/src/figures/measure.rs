@@ -35,7 +35,7 @@ pub struct Bench {
     pub seeds: u64,
     /// Number of evaluated frames for each seed in the experiment of figure 7.
     pub frames: u64,
-    /// Interpretation of the questions that the papers leave open about Rendering Control.
+    /// Interpretation of the papers: answers to the questions that they leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
@@ -395,7 +395,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-/// Returns the complete pictures shown per second, or 0 if none was shown.
+/// Returns the number of complete pictures shown per second, or 0 if none was shown.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }

@@ -40,7 +40,7 @@ pub struct Figure {
     pub spread: Option<f64>,
     /// Experiment that simulates the figure.
     pub experiment: &'static str,
-    /// Relation between the figure and the choices made in the model.
+    /// Relation between the figure and the choices made in the model: checked, fitted, or rule chosen.
     pub basis: Basis,
     /// Known cause of a difference between model and paper. Empty if the model reproduces the figure.
     pub cause: &'static str,

@@ -101,7 +101,7 @@ impl LimitQuery {
         }
     }
 
-    /// Creates a query with the pipeline's own criterion, as stated in its registry entry.
+    /// Creates a query with the pipeline's own criterion, which the registry states.
     ///
     /// # Errors
     ///

@@ -192,7 +192,7 @@ pub enum OverError {
     /// The settings of the experiment are invalid.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The machine cannot run.
+    /// The machine of the experiment cannot be built or run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
 }

@@ -39,9 +39,9 @@ pub enum SweepError {
         path: String,
         /// Name of the first value that differs between the two headers.
         what: String,
-        /// Value of this sweep.
+        /// Value in the header of this sweep.
         expected: String,
-        /// Value in the file.
+        /// Value in the header of the folder's file.
         found: String,
     },
     /// The folder holds files of another command.
@@ -49,7 +49,7 @@ pub enum SweepError {
     Occupied {
         /// Path of the folder, as given by the user.
         path: String,
-        /// Command that wrote the files.
+        /// Name of the command that wrote the files.
         command: String,
     },
     /// The manifest (list of files) of the folder cannot be used.

@@ -25,7 +25,7 @@ pub enum Status {
 pub struct SweepRow {
     /// Index of the point in the parameter space, from 0.
     pub point: u64,
-    /// Status of the point.
+    /// Result status of the point: simulated or failed.
     pub status: Status,
     /// Settings that vary in the sweep, with their values at this point, by key.
     pub parameters: BTreeMap<String, Value>,

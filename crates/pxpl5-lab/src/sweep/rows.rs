@@ -50,7 +50,7 @@ impl RowFile {
         Ok(())
     }
 
-    /// Records the byte position of a point's row.
+    /// Adds the byte position of a point's row to the index.
     pub(super) fn add(&mut self, row: &SweepRow, byte: u64) {
         let point = row.point as usize;
         if self.places.len() <= point {
@@ -159,7 +159,7 @@ impl Scan {
         Ok(is_whole)
     }
 
-    /// Parses the current line.
+    /// Parses the current line as JSON.
     fn parsed<T: DeserializeOwned>(&self) -> Result<T, SweepError> {
         serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }

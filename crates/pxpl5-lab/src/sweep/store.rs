@@ -98,7 +98,7 @@ impl Store {
         self.rows.holds(point)
     }
 
-    /// Returns the set of finished points.
+    /// Returns the set of points that have a row.
     pub(super) fn held(&self) -> Points {
         self.rows.points().collect()
     }
