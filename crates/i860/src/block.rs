@@ -134,7 +134,7 @@ pub(crate) struct Block {
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// A load or store as the clock counts it, without its address and value.
+/// A load or store as the timing model uses it, without its address and value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,

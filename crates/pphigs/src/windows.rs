@@ -358,7 +358,7 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Runs the code that lists the messages of one window, behind the messages of earlier windows.
+/// Runs the kernel that lists the messages of one window. In memory, this list follows the lists of earlier windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,

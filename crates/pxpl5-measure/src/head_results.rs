@@ -63,8 +63,7 @@ fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (Pixel
 impl EyeReport {
     /// Evaluates a run with a head in the display mode `showing`.
     ///
-    /// Returns `None` without a head. Also returns `None` if pixels are lit for an instant only and no device moves
-    /// pictures.
+    /// Returns `None` without a head. Returns `None` too for a display without persistence and without reprojection.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
         outcome.head().and_then(|_| judged(outcome, showing, None).1)

@@ -196,8 +196,8 @@ impl Moving for CallableMotion {
     }
 }
 
-/// Number of instants, an eighth of a second apart, whose poses identify a Python function in the hash of the
-/// experiment.
+/// Number of samples of a Python motion that go into the hash of the experiment. The samples are an eighth of a second
+/// apart and stand for the function.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 

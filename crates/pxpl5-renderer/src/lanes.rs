@@ -341,8 +341,8 @@ mod tests {
         }
     }
 
-    /// Draws the same triangles as words and as a batch, on all vector units, and compares the results. Returns the
-    /// number of covered pixels.
+    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results and
+    /// returns the number of covered pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

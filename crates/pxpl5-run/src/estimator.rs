@@ -113,7 +113,7 @@ fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns the run's predictor with the reports of another tracker, until the end of the run.
+/// Returns a predictor like that of the run, which receives the reports of another tracker instead.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);

@@ -175,7 +175,8 @@ pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
     DMat4::from_cols(x, y, z, w).transpose()
 }
 
-/// Returns the matrix rows to homogeneous window coordinates, for any projection matrix to clip coordinates.
+/// Returns the rows of the matrix that transforms eye coordinates to homogeneous window coordinates. `projection` transforms
+/// eye coordinates to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
     let w = rows.w_axis;

@@ -65,7 +65,7 @@ pub const STEPS: u64 = 64;
 /// A search for the values of one setting with which an experiment reaches a goal.
 #[derive(Clone, Debug)]
 pub struct OverQuery {
-    /// The experiment with all of its other settings.
+    /// The experiment, with all settings except the varied one.
     pub file: ExperimentFile,
     /// Path of the varied setting, such as `machine.n_gps`.
     pub key: String,
