@@ -179,13 +179,25 @@ fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
                     Ok(Values::Range { from, step, count: (length / step) as u64 + 1 })
                 }
                 _ => Err(wrong(
-                    path,
                     place,
+                    path,
                     "whole numbers { from, to, step } with from <= to and step > 0",
                     &value.to_string(),
                 )),
             }
         }
         other => Err(wrong(place, path, "a list with values, or { from, to, step }", &other.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_range_is_reported_with_the_file_first_and_then_the_key() {
+        let range: Value = toml::from_str("from = 4\nto = 1\n").map(Value::Table).expect("TOML");
+        let error = values("display.slices", &range, "volumes.toml").err().expect("refused");
+        assert!(error.message().starts_with("volumes.toml: display.slices: expected whole numbers"), "{error:?}");
     }
 }
