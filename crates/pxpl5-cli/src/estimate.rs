@@ -206,14 +206,21 @@ mod tests {
         }
     }
 
-    /// Tests the estimates of [`HELD_OUT`]. The time limits are wider than above, because the profile `dist` is faster
-    /// than the builds of [`VOLUMES`].
+    /// Compares the estimates with volumes that were not used to fit the constants.
+    ///
+    /// The bits of dark slices are reserved and not written. An estimate may therefore exceed the measured memory by the
+    /// bits of all slices. The bounds of time are wider than above, because the profile `dist` is faster than the builds of
+    /// [`VOLUMES`].
     #[test]
     fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
         for (work, megabytes, seconds) in HELD_OUT {
             let Estimate { bytes, seconds: estimated } = work.estimate();
-            let (memory, time) = (bytes / 1e6 / megabytes, estimated / seconds);
-            assert!((0.8..5.0).contains(&memory), "{work:?}: {memory} times {megabytes} MB");
+            let bits = (work.slices * work.width * work.height) as f64 / 2e6;
+            let (memory, time) = (bytes / 1e6, estimated / seconds);
+            assert!(
+                (0.8 * megabytes..2.0 * megabytes + bits).contains(&memory),
+                "{work:?}: {memory} for {megabytes} MB"
+            );
             assert!((0.5..12.0).contains(&time), "{work:?}: {time} times {seconds} s");
         }
     }
