@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn a_wrong_range_is_reported_with_the_file_first_and_then_the_key() {
         let range: Value = toml::from_str("from = 4\nto = 1\n").map(Value::Table).expect("TOML");
-        let error = values("display.slices", &range, "volumes.toml").err().expect("refused");
+        let error = values("display.slices", &range, "volumes.toml").expect_err("from is above to");
         assert!(error.message().starts_with("volumes.toml: display.slices: expected whole numbers"), "{error:?}");
     }
 }
