@@ -40,8 +40,7 @@ fn eight_thousand_typical_triangles_are_limited_by_the_renderers() {
     assert_eq!(limit(&report), Resource::Renderers);
     let renderers = report.utilisation.expect("it ran").renderers;
     assert!((0.85..1.0).contains(&renderers.executing.mean) && renderers.executing.idle == 0, "{renderers:?}");
-    let all = renderers.executing.mean + renderers.copying + renderers.waiting;
-    assert!((all - 1.0).abs() < 1e-9, "{renderers:?}");
+    assert!(renderers.executing.mean + renderers.copying < 1.0, "no controller does both at a time: {renderers:?}");
 }
 
 /// One region holds most of the head, so one renderer works and those without a region wait.

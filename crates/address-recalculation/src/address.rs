@@ -128,7 +128,7 @@ impl AddressUnit {
         Some(self.around(met.face, [column, row], fractions))
     }
 
-    /// Returns the footprint with the given upper left texel. Some of its four texels can lie beyond the face's edges.
+    /// Returns the footprint with the given upper left texel. Some of the footprint's four texels can lie beyond the edges of the face.
     pub(crate) fn around(&self, face: CubeFace, [column, row]: [i64; 2], fractions: [u32; 2]) -> Footprint {
         let places = [[column, row], [column + 1, row], [column, row + 1], [column + 1, row + 1]];
         let size = i64::from(self.geometry.texels);

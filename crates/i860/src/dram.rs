@@ -80,7 +80,7 @@ impl Dram {
             if interval == 0 || clocks == 0 || *due > now {
                 continue;
             }
-            // Of several interruptions since the last request, only the latest one costs time.
+            // If several interruptions fell due since the last request, only the latest one costs time (assumed).
             let missed = (now - *due) / interval;
             let latest = *due + missed * interval;
             self.free = self.free.max(latest) + clocks;

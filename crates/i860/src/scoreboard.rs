@@ -210,7 +210,7 @@ impl Scoreboard {
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
-        // Of the hazards that matter to the instruction, find the longest wait.
+        // Find the longest wait among the hazards that the instruction is sensitive to.
         while bits != 0 {
             let n = bits.trailing_zeros() as usize;
             bits &= bits - 1;

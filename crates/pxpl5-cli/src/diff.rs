@@ -1,13 +1,16 @@
 //! The command `pxpl5 diff`, which compares two results.
 
 use crate::error::CliError;
+use crate::report::files::Files;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::lab::diff::{Changed, Differences, diff};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+
+/// Name of the report in a folder of `pxpl5 run --out`.
+const REPORT_FILE: &str = "report.json";
 
 /// Compare two results: settings, numbers and pictures.
 #[derive(Args, Debug)]
@@ -15,7 +18,7 @@ use std::path::{Path, PathBuf};
   pxpl5 diff out/slats out/rendering-control
   pxpl5 diff out/a/report.json out/b/report.json --least 5 --json
 
-A result is a folder that `pxpl5 run --out` wrote, or its report.json. Pictures are compared where both folders have them.")]
+A result is a folder that `pxpl5 run --out` wrote, or its report.json. Pictures are compared if the manifests of both folders list them.")]
 pub(crate) struct DiffArgs {
     /// First result: a folder of `pxpl5 run --out`, or its report.json.
     #[arg(value_name = "A")]
@@ -63,12 +66,16 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     print(&text(&found, &pictures))
 }
 
-/// Reads the report of a result: a file, or the report in a folder.
+/// Reads the report of a result: a file, or the report that the manifest of a folder lists.
 fn report(path: &Path) -> Result<Value, CliError> {
-    let file = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
+    let file = if path.is_dir() { path.join(REPORT_FILE) } else { path.to_owned() };
     let name = file.display();
-    let bytes =
-        std::fs::read(&file).map_err(|error| CliError::failure(format!("{name}: {error}; expected a report.json")))?;
+    let read = if path.is_dir() {
+        Files::of(path, false)?.first(REPORT_FILE)
+    } else {
+        std::fs::read(path).map_err(|error| error.to_string())
+    };
+    let bytes = read.map_err(|error| CliError::failure(format!("{name}: {error}; expected a {REPORT_FILE}")))?;
     let report: Value =
         serde_json::from_slice(&bytes).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
     match report["schema"].as_str() {
@@ -80,27 +87,30 @@ fn report(path: &Path) -> Result<Value, CliError> {
     }
 }
 
-/// Compares the pictures whose file names occur in both folders.
+/// Compares the pictures that the manifests of both folders list. A file has no pictures.
 fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
-    let [of_a, of_b] = [a, b].map(names);
-    let names: Vec<String> = of_a.intersection(&of_b).cloned().collect();
-    names.into_iter().map(|name| picture(a, b, name)).collect()
+    if !(a.is_dir() && b.is_dir()) {
+        return Ok(Vec::new());
+    }
+    let [of_a, of_b] = [Files::of(a, false)?, Files::of(b, false)?];
+    let mut all = Vec::new();
+    for name in of_a.names().filter(|name| name.ends_with(".png")) {
+        // A picture that has changed since its run is left out with a warning.
+        if let Some(pair) = of_a.read(name).zip(of_b.read(name)) {
+            all.push(picture(name, [(a, pair.0), (b, pair.1)])?);
+        }
+    }
+    all.sort_by(|one, other| one.name.cmp(&other.name));
+    Ok(all)
 }
 
-/// Returns the file names of the pictures in a folder, sorted. The result is empty for a file.
-fn names(folder: &Path) -> BTreeSet<String> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    names.filter(|name| name.ends_with(".png")).collect()
-}
-
-fn picture(a: &Path, b: &Path, name: String) -> Result<PictureDifference, CliError> {
-    let open = |folder: &Path| {
-        let path = folder.join(&name);
-        let picture = image::open(&path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
-        Ok::<_, CliError>(picture.into_rgb8())
-    };
-    let (a, b) = (open(a)?, open(b)?);
+fn picture(name: &str, files: [(&Path, Vec<u8>); 2]) -> Result<PictureDifference, CliError> {
+    let decoded = files.map(|(folder, bytes)| {
+        let refused = |error| CliError::failure(format!("{}: {error}", folder.join(name).display()));
+        image::load_from_memory(&bytes).map(image::DynamicImage::into_rgb8).map_err(refused)
+    });
+    let [a, b] = decoded;
+    let (a, b) = (a?, b?);
     let sizes = [&a, &b].map(|picture| [picture.width(), picture.height()]);
     let same_size = sizes[0] == sizes[1];
     let pairs = || a.pixels().zip(b.pixels());
@@ -109,7 +119,7 @@ fn picture(a: &Path, b: &Path, name: String) -> Result<PictureDifference, CliErr
     };
     let differing = same_size.then(|| pairs().filter(|pair| distance(*pair) > 0).count() as u64);
     let largest = same_size.then(|| pairs().map(distance).max().unwrap_or_default());
-    Ok(PictureDifference { name, sizes, differing, largest })
+    Ok(PictureDifference { name: name.to_owned(), sizes, differing, largest })
 }
 
 fn text(found: &Differences, pictures: &[PictureDifference]) -> String {

@@ -52,8 +52,8 @@ pub(crate) struct ReadingsArgs {
 ///
 /// Fails if a figure cannot be simulated.
 pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
-    let study = Study::Readings { seeds: args.seeds, frames: args.frames };
-    args.budget.admit_study(study, "take fewer --seeds or --frames")?;
+    let study = Study::Readings { seeds: args.seeds, frames: args.frames, best: args.best };
+    args.budget.admit_study(study, "take fewer --seeds, --frames or --best")?;
     let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let bar = progress(0, "readings", args.quiet);
     let readings = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));

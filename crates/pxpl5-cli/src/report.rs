@@ -1,6 +1,6 @@
 //! The command `pxpl5 report`, which writes one HTML page of a results folder.
 
-mod files;
+pub(crate) mod files;
 mod load;
 mod tables;
 

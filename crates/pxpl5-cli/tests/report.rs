@@ -229,3 +229,27 @@ fn fields_that_a_run_needs_are_told_of_every_pipeline() {
         assert!(output.status.success(), "{pipeline}, {needed}: {}", err(&output));
     }
 }
+
+/// Tests that `diff` compares only pictures that the manifests of both folders list, and keeps the numbers of both runs.
+#[test]
+fn a_difference_is_of_two_runs_and_not_of_what_lies_beside_them() {
+    let folder = Folder::new("diff-manifest");
+    results(&folder);
+    let other = ["run", "--pipeline", "slats", "--scene", "mig", "--triangles", "60", "--fields", "20", "--set"];
+    let other = folder.run(&[&other[..], &["gp.triangle_ns=20000", "--out", "other"]].concat());
+    assert!(other.status.success(), "{}", err(&other));
+    let right = std::fs::read(folder.0.join("results/right.png")).expect("written");
+    ["results/stale.png", "other/stale.png"].iter().for_each(|name| {
+        folder.file(name, &right);
+    });
+    let output = folder.run(&["diff", "results", "other", "--json"]);
+    assert!(output.status.success(), "{}", err(&output));
+    let found = support::json(&output);
+    let names: Vec<_> = found["pictures"].as_array().expect("a list").iter().map(|picture| &picture["name"]).collect();
+    assert_eq!(names, ["left.png", "right.png"]);
+    assert!(found["settings"].to_string().contains("gp.triangle_ns") && found["same_trace"] == false, "{found}");
+    // A changed picture is left out with a warning.
+    folder.file("other/right.png", b"another one");
+    let output = folder.run(&["diff", "results", "other"]);
+    assert!(err(&output).contains("left out") && !out(&output).contains("right.png"), "{}", err(&output));
+}

@@ -40,7 +40,7 @@ pub struct Differences {
 }
 
 /// First parts of the paths that denote settings. All other paths denote results.
-const SETTINGS: [&str; 15] = [
+const SETTINGS: [&str; 16] = [
     "schema",
     "version",
     "machine",
@@ -49,6 +49,7 @@ const SETTINGS: [&str; 15] = [
     "pipeline",
     "variant",
     "display",
+    "hmd",
     "overrides",
     "n_gps",
     "n_renderers",

@@ -47,7 +47,7 @@ fn a_display_by_numbers_is_a_panel_of_these_numbers() {
     for (name, value) in expected {
         assert_eq!(number(&plan, &format!("panel.{name}")), value, "{name}");
     }
-    // What it wrote out says the same.
+    // The written settings give the same experiment again.
     let again = ExperimentFile::parse(&plan.settings().to_string(), "written").and_then(|file| file.resolve());
     assert_eq!(again.expect("an experiment"), plan);
 }

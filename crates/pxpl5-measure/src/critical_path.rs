@@ -48,7 +48,7 @@ pub struct CriticalPath {
 pub const PICTURES_FOLLOWED: usize = 24;
 
 /// Largest number of links of a chain that are printed.
-const LINKS_TOLD: usize = 16;
+const LINKS_PRINTED: usize = 16;
 
 impl CriticalPath {
     /// Returns the chain of waits of a run's last complete pictures. Returns `None` if no picture was complete, or if
@@ -73,7 +73,7 @@ impl CriticalPath {
             Resource::ALL.into_iter().filter_map(|resource| part(resource, chains, total)).collect();
         parts.sort_by(|a, b| b.share.total_cmp(&a.share));
         let limited_by = parts.first().map(ToString::to_string)?;
-        let chain = chains.last().map(|steps| told(steps)).unwrap_or_default();
+        let chain = chains.last().map(|steps| links_text(steps)).unwrap_or_default();
         Some(Self { pictures, latency_ms: total.as_ms() / pictures as f64, parts, limited_by, chain })
     }
 
@@ -105,7 +105,7 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is printed by name if it causes at least this share of the wait for a resource.
+/// A board is printed by name if it causes at least this share of the wait for a resource (a choice of the text alone).
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {
@@ -124,7 +124,7 @@ impl fmt::Display for PathPart {
 }
 
 /// Joins consecutive steps with the same resource and board. Returns the first links as text.
-fn told(steps: &[Step]) -> Vec<String> {
+fn links_text(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;
     for step in steps {
@@ -138,8 +138,8 @@ fn told(steps: &[Step]) -> Vec<String> {
         }
         last = Some(kind);
     }
-    let more = links.len().saturating_sub(LINKS_TOLD);
-    let mut lines: Vec<String> = links.into_iter().take(LINKS_TOLD).map(|link| line(&link)).collect();
+    let more = links.len().saturating_sub(LINKS_PRINTED);
+    let mut lines: Vec<String> = links.into_iter().take(LINKS_PRINTED).map(|link| line(&link)).collect();
     if more > 0 {
         lines.push(format!("and {more} links before"));
     }
@@ -196,7 +196,7 @@ mod tests {
             step(Resource::Ports, port, 10, 20),
             step(Resource::Transform, Some(Board::Gp(1)), 0, 10),
         ];
-        assert_eq!(told(&chain), ["Ports and 1 before: 20.000 ms", "Transform: 10.000 ms"]);
+        assert_eq!(links_text(&chain), ["Ports and 1 before: 20.000 ms", "Transform: 10.000 ms"]);
     }
 
     #[test]

@@ -18,13 +18,13 @@ impl HeadResults {
 
 /// Returns a warning if a run with a head has discarded its records and had no streaming observer.
 pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
-    let is_untold =
+    let is_missing =
         outcome.head().is_some() && outcome.has_discarded_records() && HeadResults::from_observer(outcome).is_none();
-    is_untold.then(|| MISSING_RESULTS.to_owned())
+    is_missing.then(|| MISSING_RESULTS.to_owned())
 }
 
-const MISSING_RESULTS: &str = "what is said from the head to light, of its turns and of errors in pixels is of the last pictures alone: the run gave up \
-    its records, and nobody summed them up before (Experiment::summed_by, or Keep::Everything)";
+const MISSING_RESULTS: &str = "latencies from the head to light and errors in pixels cover the last pictures alone: the run discarded its records and had no \
+    streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
 
 impl PixelErrors {
     /// Returns the errors of a run whose pictures are shown as drawn. Empty for a run without a head.

@@ -52,7 +52,7 @@ impl Resource {
             Self::Transform => "EDIT and TRANSFORM on the graphics processors",
             Self::Messages => "messages and tokens of the graphics processors",
             Self::Host => "SEND on the host",
-            Self::Other => "what no record tells",
+            Self::Other => "waits that no record explains",
         }
     }
 }

@@ -37,13 +37,18 @@ struct StageWork {
     end: Time,
 }
 
-/// Times that differ by less than this span count as one instant. Signals and hops of the ring take a few cycles each.
+/// Times that differ by less than this span count as one instant (assumed). A signal or a hop of the ring takes a few
+/// cycles. A region's transfer takes 780 us (TR94).
 const NEAR: Span = Span::from_us(20);
 
-/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer.
+/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
+/// Without this rule, near ties between the port and a token count for the token.
 const SLACK: u64 = 4;
 
-/// Largest number of steps for one picture.
+/// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
+const ARRIVALS_SEARCHED: usize = 512;
+
+/// Largest number of steps for one picture. Time beyond these steps belongs to [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
 /// The work of a run, sorted by end time, from the earliest work that the followed pictures can have waited for.
@@ -309,8 +314,7 @@ impl<'a> Trail<'a> {
     /// Returns the index of the last wanted arrival that precedes arrival `place` and had ended by the instant `by`.
     fn arrival_before(&self, place: usize, by: Time, is_wanted: impl Fn(&Arrival) -> bool) -> Option<usize> {
         let end = self.arrivals_by(by).min(place);
-        // Arrivals far back in time are not the cause.
-        let first = end.saturating_sub(512);
+        let first = end.saturating_sub(ARRIVALS_SEARCHED);
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
 

@@ -30,7 +30,7 @@ struct Turns {
 
 impl fmt::Debug for LatchedFaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TurnedFaces").field("latched", &self.latched).finish_non_exhaustive()
+        f.debug_struct("LatchedFaces").field("latched", &self.latched).finish_non_exhaustive()
     }
 }
 

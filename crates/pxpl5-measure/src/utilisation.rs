@@ -48,7 +48,7 @@ impl Shares {
     }
 }
 
-/// Share of the time below which a board counts as idle.
+/// Share of the time below which a board counts as idle (assumed: the messages of a board without work stay below it).
 const IDLE: f64 = 0.01;
 
 /// Shares of CPU time of the graphics processors, 0 to 1.
@@ -162,7 +162,7 @@ impl fmt::Display for Utilisation {
         writeln!(
             f,
             "Busy GPs: {} (work {}, messages {}, tokens {})",
-            told(&gps.busy, "GP"),
+            shares_text(&gps.busy, "GP"),
             percent(gps.work),
             percent(gps.messages),
             percent(gps.tokens)
@@ -170,14 +170,14 @@ impl fmt::Display for Utilisation {
         writeln!(
             f,
             "Busy renderers: {} (copying {}, waiting for commands {})",
-            told(&renderers.executing, "renderer"),
+            shares_text(&renderers.executing, "renderer"),
             percent(renderers.copying),
             percent(renderers.waiting)
         )?;
         writeln!(
             f,
             "Busy ring: {} ({:.1} of {:.0} million words a second)",
-            told(&ring.channels, "channel"),
+            shares_text(&ring.channels, "channel"),
             ring.words_per_second / 1e6,
             ring.capacity / 1e6
         )?;
@@ -188,7 +188,7 @@ impl fmt::Display for Utilisation {
 }
 
 /// Formats shares as text: the mean, the busiest board, and the number of idle boards.
-fn told(shares: &Shares, board: &str) -> String {
+fn shares_text(shares: &Shares, board: &str) -> String {
     let idle = if shares.idle > 0 { format!(", {} idle", shares.idle) } else { String::new() };
     format!("mean {}, {board} {} {}{idle}", percent(shares.mean), shares.busiest, percent(shares.max))
 }

@@ -101,7 +101,10 @@ fn assert_same(experiment: &Experiment) {
     let other = expected.lines().zip(found.lines()).find(|(expected, found)| expected != found);
     assert_eq!(other, None, "{name}");
     assert_eq!(expected.len(), found.len(), "{name}");
-    assert!(statistics.has_discarded_records() && !everything.has_discarded_records(), "{name}: records were given up");
+    assert!(
+        statistics.has_discarded_records() && !everything.has_discarded_records(),
+        "{name}: records were discarded"
+    );
     let of_head = everything.report().head.expect("tracked");
     assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
     let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());

@@ -562,8 +562,8 @@ mod tests {
         let clump = CommandBatch { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
         message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(message(&mut fifo, Time(500_000), [clump]).accepted, None);
-        // Of 150 words 100 have room. The first triangle makes room for 30 more when the copy ends, and the second for
-        // the last 20, 6.675 us later.
+        // The FIFO has room for 100 of the 150 words. When the copy ends, the first triangle makes room for 30 more. The
+        // second triangle makes room for the last 20 words 6.675 us later.
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 6_675_000 + 20 * 50_000)));
         // The controller is free after the fifth triangle.

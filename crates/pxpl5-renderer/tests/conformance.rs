@@ -404,7 +404,7 @@ fn every_part_of_the_suite_finds_a_wrong_array() {
     assert_eq!(found.after, "\"round 7, step 0\"");
 }
 
-/// Of eight planes one has no bit set, one has all bits set, one a quarter, one three quarters and four the half.
+/// Eight bit planes are drawn. One has no bit set, one all bits, one a quarter, one three quarters, and four half of them.
 #[test]
 fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
     let layout = Layout::slats();

@@ -245,7 +245,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn first_grantable(&self) -> Option<(usize, usize)> {
-        // Of the heads whose port has a free send channel, take the first that can be granted.
+        // Grant the first possible queue head whose port has a free send channel.
         let channel = self.channels.iter().position(Option::is_none)?;
         let mut heads: Vec<_> = (0..self.queues.len())
             .filter(|source| self.sending[*source] < self.timing.source_channels)

@@ -223,7 +223,11 @@ fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
     let (source, destination) = (NodeId(4), NodeId(9));
     let begun = ChannelSnapshot { channel: 0, source, destination, words: 100, granted: us(1), ends_at: None };
     assert_eq!(ring.channel_snapshots(us(1)).collect::<Vec<_>>(), [begun]);
-    assert_eq!(ring.channel_snapshots(us(900)).collect::<Vec<_>>(), [begun], "nobody knows when it will have room");
+    assert_eq!(
+        ring.channel_snapshots(us(900)).collect::<Vec<_>>(),
+        [begun],
+        "the time at which the receiver has room is not known"
+    );
 
     let end = us(1) + Span::from_ns((16 + 100) * 50);
     let accept = RingEvent::Accept { destination, last_word_at: end + HOP * 5 };

@@ -2,7 +2,11 @@
 
 use crate::displays;
 use crate::pipelines;
-use crate::registry::Registry;
+use crate::registry::{PipelineEntry, Registry};
+
+/// Pipelines that represent their families in a comparison of only a few rows.
+const USUAL: [&str; 7] =
+    ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 
 impl Registry {
     /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the analytic
@@ -10,5 +14,17 @@ impl Registry {
     #[must_use]
     pub fn of_papers() -> Self {
         Self::with(pipelines::entries(), displays::entries())
+    }
+
+    /// Returns true if a pipeline represents its family in a comparison of only a few rows.
+    ///
+    /// A family that has none of the papers' usual pipelines, such as one of another crate, is represented by its first
+    /// compared pipeline.
+    #[must_use]
+    pub fn is_usual(&self, pipeline: &PipelineEntry) -> bool {
+        let mut family = self.pipelines().iter().filter(|other| other.compared && other.family == pipeline.family);
+        let first = family.clone().next().map(|first| first.name);
+        USUAL.contains(&pipeline.name)
+            || (first == Some(pipeline.name) && !family.any(|other| USUAL.contains(&other.name)))
     }
 }

@@ -93,7 +93,7 @@ impl Experiment {
     /// Returns an error if the host no longer wants the result.
     pub(crate) fn go_on(&self) -> Result<(), ExperimentError> {
         if self.host.is_stopped() {
-            return Err(ExperimentError::Stopped("the run was given up".to_owned()));
+            return Err(ExperimentError::Stopped("the run was stopped".to_owned()));
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// A results folder, restricted to the files that its manifest lists.
-pub(super) struct Files<'a> {
+pub(crate) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,
     /// True if warnings about left-out files are not printed.
@@ -20,11 +20,11 @@ impl<'a> Files<'a> {
     /// # Errors
     ///
     /// Fails when the manifest file exists but is not a valid manifest.
-    pub(super) fn of(folder: &'a Path, quiet: bool) -> Result<Self, CliError> {
+    pub(crate) fn of(folder: &'a Path, quiet: bool) -> Result<Self, CliError> {
         Ok(Self { folder, manifest: Manifest::read(folder)?, quiet })
     }
 
-    pub(super) const fn folder(&self) -> &Path {
+    pub(crate) const fn folder(&self) -> &Path {
         self.folder
     }
 
@@ -34,7 +34,7 @@ impl<'a> Files<'a> {
     /// # Errors
     ///
     /// Fails when the file cannot be read, or differs from the one that the manifest lists.
-    pub(super) fn first(&self, name: &str) -> Result<Vec<u8>, String> {
+    pub(crate) fn first(&self, name: &str) -> Result<Vec<u8>, String> {
         let Some(manifest) = &self.manifest else {
             let bytes = fs::read(self.folder.join(name)).map_err(|error| error.to_string())?;
             self.warn_if_unlisted();
@@ -47,7 +47,7 @@ impl<'a> Files<'a> {
     }
 
     /// Prints a warning if the folder has no manifest, because its other files are then left out.
-    pub(super) fn warn_if_unlisted(&self) {
+    pub(crate) fn warn_if_unlisted(&self) {
         if self.manifest.is_none() {
             self.warn(&format!(
                 "{}: there is no {MANIFEST_FILE} that says which pictures and tables are of this run; they are left out. Run it again to \
@@ -58,13 +58,13 @@ impl<'a> Files<'a> {
     }
 
     /// Returns the names of the files that the manifest lists.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.iter().flat_map(Manifest::names)
     }
 
     /// Returns the contents of a file in the manifest. Returns `None` if the manifest does not list the file. Returns
     /// `None` and prints a warning if the file has changed.
-    pub(super) fn read(&self, name: &str) -> Option<Vec<u8>> {
+    pub(crate) fn read(&self, name: &str) -> Option<Vec<u8>> {
         match self.manifest.as_ref()?.read_file(self.folder, name) {
             Ok(bytes) => bytes,
             Err(error) => {

@@ -43,23 +43,11 @@ impl ComparedPipeline {
 /// errors of the other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
-/// Pipelines that represent their families in a comparison of only a few rows.
-const USUAL: [&str; 7] =
-    ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
-
-/// Returns the names of the rows in a short comparison: one or two for each family of pipelines.
-///
-/// A family that has none of the usual pipelines, such as one of another crate, is represented by its first pipeline.
-/// Rows that are variants of a pipeline are always included.
+/// Returns the names of the rows in a short comparison: one or two for each family of pipelines
+/// ([`Registry::is_usual`]). Rows that are variants of a pipeline are always included.
 #[must_use]
 pub fn usual_rows(registry: &Registry) -> Vec<String> {
-    let entries = registry.pipelines();
-    let is_usual = |name: &str| {
-        let Some(entry) = entries.iter().find(|entry| entry.name == name) else { return true };
-        let mut family = entries.iter().filter(|other| other.compared && other.family == entry.family);
-        let first = family.clone().next().map(|first| first.name);
-        USUAL.contains(&name) || (!family.any(|other| USUAL.contains(&other.name)) && first == Some(name))
-    };
+    let is_usual = |name: &str| registry.pipeline(name).map_or(true, |entry| registry.is_usual(entry));
     compared_pipelines(registry).into_iter().map(|contender| contender.name).filter(|name| is_usual(name)).collect()
 }
 
