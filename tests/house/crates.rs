@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// A crate of the workspace.
 pub(crate) struct Crate {
-    /// Name in the manifest.
+    /// Name of the folder below `crates`. On a registry, the package's name has the prefix `pxpl5-`.
     pub(crate) name: String,
     /// Description in the manifest.
     pub(crate) about: String,
@@ -34,19 +34,26 @@ pub(crate) fn workspace() -> Vec<Crate> {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let packages = metadata["packages"].as_array().expect("a list");
-    let names: Vec<&str> = packages.iter().filter_map(|package| package["name"].as_str()).collect();
+    let names: Vec<(&str, &str)> = packages.iter().map(|package| (text(package, "name"), name(package))).collect();
     let mut all: Vec<Crate> = packages.iter().map(|package| read(package, &names)).collect();
     all.sort_by(|a, b| a.name.cmp(&b.name));
     all
 }
 
-fn read(package: &Value, names: &[&str]) -> Crate {
+/// Returns the name of a crate: its folder below `crates`, which is also the name in `use` declarations.
+fn name(package: &Value) -> &str {
+    let manifest = Path::new(text(package, "manifest_path"));
+    let folder =
+        manifest.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join("crates")).ok().and_then(Path::parent);
+    folder.and_then(Path::to_str).unwrap_or("pxpl5")
+}
+
+fn read(package: &Value, names: &[(&str, &str)]) -> Crate {
     let dependencies = package["dependencies"].as_array().expect("a list").iter();
     let mut below: Vec<String> = dependencies
         .filter(|dependency| dependency["kind"].is_null())
-        .filter_map(|dependency| dependency["name"].as_str())
-        .filter(|name| names.contains(name))
-        .map(str::to_owned)
+        .filter_map(|dependency| names.iter().find(|(package, _)| *package == text(dependency, "name")))
+        .map(|(_, folder)| (*folder).to_owned())
         .collect();
     below.sort();
     below.dedup();
@@ -54,12 +61,7 @@ fn read(package: &Value, names: &[&str]) -> Crate {
     let mut files = Vec::new();
     collect(&src, &src, &mut files);
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    Crate {
-        name: text(package, "name").to_owned(),
-        about: text(package, "description").to_owned(),
-        dependencies: below,
-        files,
-    }
+    Crate { name: name(package).to_owned(), about: text(package, "description").to_owned(), dependencies: below, files }
 }
 
 fn text<'a>(package: &'a Value, key: &str) -> &'a str {

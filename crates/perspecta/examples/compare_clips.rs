@@ -1,4 +1,4 @@
-//! Prints a table of all clip variants and projections of a scene. `cargo run --release -p perspecta --example
+//! Prints a table of all clip variants and projections of a scene. `cargo run --release -p pxpl5-perspecta --example
 //! compare_clips -- SCENE`.
 
 use perspecta::PerspectaConfig;

@@ -1,5 +1,5 @@
 //! Writes pictures of a volume: the six clip variants side by side, a sheet of all slices, a slice before and after
-//! halftoning. `cargo run --release -p perspecta --example draw_volume -- SCENE FOLDER`.
+//! halftoning. `cargo run --release -p pxpl5-perspecta --example draw_volume -- SCENE FOLDER`.
 
 use image::{GenericImage, Rgb, RgbImage, imageops};
 use perspecta::{Camera, PerspectaConfig, ViewOptions, view_planes};

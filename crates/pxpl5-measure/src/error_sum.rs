@@ -57,7 +57,7 @@ impl ErrorSum {
         if let Some(cause) = self.without {
             judging.replace_poses(run, head, &fields, cause);
         }
-        fields.for_each(|field| judging.judge(run, field, collected));
+        fields.for_each(|field| judging.evaluate(run, field, collected));
         judging.shown.forget(run);
     }
 
@@ -70,7 +70,7 @@ impl ErrorSum {
 /// State of the evaluation of a run's pixels.
 #[derive(Debug)]
 struct Evaluation {
-    judge: Evaluator,
+    evaluator: Evaluator,
     shown: Shown,
     content: Content,
     head: Arc<HeadViews>,
@@ -136,7 +136,7 @@ impl Evaluation {
             Showing::DelayedVideo => Content::DelayedVideo,
         };
         Self {
-            judge: Evaluator::new(run, head),
+            evaluator: Evaluator::new(run, head),
             shown: Shown::begin(run, head),
             content,
             head: Arc::clone(head),
@@ -171,7 +171,7 @@ impl Evaluation {
         self.shown.replace_poses(head, &seen, cause);
     }
 
-    fn judge(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
+    fn evaluate(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         let display = run.record.display();
         // With a shifted raster, first find the offset of this field.
         if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
@@ -218,7 +218,7 @@ impl Evaluation {
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
             Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, begins) {
                 Seen::Complete(Drawn::View(moment)) => {
-                    let shift = offset.map(|offset| offset.shift_px(&self.judge.view, begins.0));
+                    let shift = offset.map(|offset| offset.shift_px(&self.evaluator.view, begins.0));
                     shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
@@ -250,12 +250,12 @@ impl Evaluation {
         if matches!(self.content, Content::DelayedVideo) {
             // The camera moves with the head. Its picture is shown with the picture that was drawn for the same
             // measurement of the head.
-            let moment = self.judge.moment(drawn);
-            let content = self.judge.content(drawn, place);
-            return self.judge.error_between(place, &content, moment.measured_at?, moment.objects_at);
+            let moment = self.evaluator.moment(drawn);
+            let content = self.evaluator.content(drawn, place);
+            return self.evaluator.error_between(place, &content, moment.measured_at?, moment.objects_at);
         }
         let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
-        self.judge.error(place, drawn, evaluated_at)
+        self.evaluator.error(place, drawn, evaluated_at)
     }
 
     /// Returns the error of a pixel that a device moves to the newest pose. For a pixel without an error, increments a
@@ -274,7 +274,7 @@ impl Evaluation {
             return None;
         };
         let by = reprojector.setting.by;
-        let found = moved((&self.judge, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
+        let found = moved((&self.evaluator, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
         let Collected { errors, eye, .. } = collected;
         if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
             eye.looked_at(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
@@ -291,7 +291,7 @@ impl Evaluation {
         self.smear_of(&content, pixel, &display.light(), eye);
         let evaluated_at = if self.at_one_instant { drawn.instant(pixel.light) } else { pixel.light };
         let place = middle(pixel.place[0], pixel.place[1]);
-        let error = self.judge.error_of(place, &content, evaluated_at);
+        let error = self.evaluator.error_of(place, &content, evaluated_at);
         errors.behind += u64::from(error.is_none());
         error
     }
@@ -300,7 +300,7 @@ impl Evaluation {
     fn smear(&self, seen: &Seen, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
-            self.smear_of(&self.judge.content(drawn, middle(pixel.place[0], pixel.place[1])), pixel, light, eye);
+            self.smear_of(&self.evaluator.content(drawn, middle(pixel.place[0], pixel.place[1])), pixel, light, eye);
         }
     }
 
@@ -309,7 +309,7 @@ impl Evaluation {
             return;
         }
         let from = Time(pixel.light.0.saturating_sub(light.width().0 / 2));
-        if let Some(px) = self.judge.way_px(content, from, from + light.width()) {
+        if let Some(px) = self.evaluator.way_px(content, from, from + light.width()) {
             eye.smeared(px);
         }
     }
@@ -319,7 +319,7 @@ impl Evaluation {
     /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
         let display = run.record.display();
-        let view = &self.judge.view;
+        let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
             let from = match &self.content {
@@ -333,7 +333,7 @@ impl Evaluation {
                 Content::Reprojected(reprojector) if reprojector.setting.by != Warp::Depth => {
                     let Seen::Complete(drawn) = self.shown.seen(run, [x, y], field, at) else { continue };
                     let Some(newest) = reprojector.newest(display, [x, y]) else { continue };
-                    let pose = self.judge.moment(&drawn).pose;
+                    let pose = self.evaluator.moment(&drawn).pose;
                     Move::between(reprojector.setting.by, view, &pose, &newest.pose).source(view, place)
                 }
                 _ => return,

@@ -31,7 +31,7 @@ const STEPS: usize = 4;
 
 /// Returns the content of a pixel that is lit from the time `at`, with its picture moved to a pose.
 pub(crate) fn moved(
-    (judge, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
+    (evaluator, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
     (by, now): (Warp, &Pose),
     place: [u32; 2],
     field: PeriodNumber,
@@ -45,9 +45,9 @@ pub(crate) fn moved(
             Seen::Complete(drawn) => drawn,
             other => return Moved::NotComplete(other),
         };
-        let Some((content, source)) = source(judge, by, now, &drawn, target, &mut last) else { return last };
+        let Some((content, source)) = source(evaluator, by, now, &drawn, target, &mut last) else { return last };
         last = Moved::Shows(content, drawn);
-        let next = pixel_at(&judge.view, source, run.record.display().rows_lit(field));
+        let next = pixel_at(&evaluator.view, source, run.record.display().rows_lit(field));
         if next == pixel {
             break;
         }
@@ -60,17 +60,17 @@ pub(crate) fn moved(
 ///
 /// Returns `None` if there is no such content. `reason` then states why.
 fn source(
-    judge: &Evaluator,
+    evaluator: &Evaluator,
     by: Warp,
     now: &Pose,
     drawn: &Drawn,
     target: DVec2,
     reason: &mut Moved,
 ) -> Option<(Content, DVec2)> {
-    let moment = judge.moment(drawn);
+    let moment = evaluator.moment(drawn);
     // Cube faces are several pictures, each with its own depth. For them, a device corrects only the rotation.
     if by == Warp::Depth && !matches!(drawn, Drawn::Faces(_)) {
-        return match judge.warped(&moment, now, target) {
+        return match evaluator.warped(&moment, now, target) {
             Warped::Seen(content, source) => Some((content, source)),
             Warped::Beyond => {
                 *reason = Moved::Beyond;
@@ -83,9 +83,9 @@ fn source(
         };
     }
     *reason = Moved::Beyond;
-    let source = Move::between(by, &judge.view, &moment.pose, now).source(&judge.view, target);
-    let source = source.filter(|source| judge.view.contains(*source))?;
-    Some((judge.content(drawn, source), source))
+    let source = Move::between(by, &evaluator.view, &moment.pose, now).source(&evaluator.view, target);
+    let source = source.filter(|source| evaluator.view.contains(*source))?;
+    Some((evaluator.content(drawn, source), source))
 }
 
 /// Returns the pixel at a position, in the nearest row that its field lights.

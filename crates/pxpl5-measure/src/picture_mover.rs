@@ -16,15 +16,15 @@ use std::sync::Arc;
 pub(crate) struct PictureMover<'a> {
     run: FinalResults<'a>,
     head: Arc<HeadViews>,
-    judge: Evaluator,
+    evaluator: Evaluator,
     shown: Shown,
     setting: Reprojection,
 }
 
 impl<'a> PictureMover<'a> {
     pub(crate) fn new(run: FinalResults<'a>, head: &Arc<HeadViews>, setting: Reprojection) -> Self {
-        let judge = Evaluator::new(&run, head);
-        Self { judge, shown: Shown::of_run(&run, head), head: Arc::clone(head), setting, run }
+        let evaluator = Evaluator::new(&run, head);
+        Self { evaluator, shown: Shown::of_run(&run, head), head: Arc::clone(head), setting, run }
     }
 
     /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
@@ -67,16 +67,16 @@ impl<'a> PictureMover<'a> {
             xs.for_each(|x| out.put_pixel(x, y, *screen.get_pixel(x, y)));
             return;
         };
-        let moment = self.judge.moment(&drawn);
+        let moment = self.evaluator.moment(&drawn);
         if self.setting.by == Warp::Depth {
-            let from = |x| match self.judge.warped(&moment, &newest.pose, middle(x, y)) {
+            let from = |x| match self.evaluator.warped(&moment, &newest.pose, middle(x, y)) {
                 Warped::Seen(_, from) => Some(from),
                 Warped::Beyond | Warped::Hidden => None,
             };
             fill_row(screen, rows, (y, xs), from, out);
             return;
         }
-        let moved = Move::between(self.setting.by, &self.judge.view, &moment.pose, &newest.pose);
-        move_row(screen, rows, (y, xs), (&self.judge.view, &moved), out);
+        let moved = Move::between(self.setting.by, &self.evaluator.view, &moment.pose, &newest.pose);
+        move_row(screen, rows, (y, xs), (&self.evaluator.view, &moved), out);
     }
 }

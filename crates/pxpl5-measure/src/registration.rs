@@ -193,7 +193,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: FinalResults<'a>,
-    judge: Evaluator,
+    evaluator: Evaluator,
     shown: Shown,
 }
 
@@ -204,7 +204,7 @@ impl<'a> Registration<'a> {
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let run = outcome.settled();
         let head = run.head?;
-        Some(Self { judge: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
+        Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
     /// Returns the error of a pixel in a field that scans the pixel's line.
@@ -214,7 +214,7 @@ impl<'a> Registration<'a> {
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Misregistration> {
         let at = self.run.record.display().lights(0, x, y, field)?;
         let Seen::Complete(drawn) = self.shown.seen(&self.run, [x, y], field, at) else { return None };
-        self.judge.error(middle(x, y), &drawn, at)
+        self.evaluator.error(middle(x, y), &drawn, at)
     }
 }
 

@@ -117,20 +117,25 @@ pub(crate) fn move_row(
 /// Moves a whole picture from the pose for which it was drawn to another pose, by a shift or a rotation.
 ///
 /// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
-/// and the number of these black pixels. [`Warp::Depth`] is treated as a rotation, because no depth is known here.
-///
-/// # Panics
-///
-/// Panics if the picture and the view differ in size.
+/// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is treated
+/// as a rotation, because no depth is known here.
 #[must_use]
-pub fn reproject(picture: &RgbImage, view: &HmdView, by: Warp, drawn_for: &Pose, now: &Pose) -> (RgbImage, u64) {
+pub fn reproject(
+    picture: &RgbImage,
+    view: &HmdView,
+    by: Warp,
+    drawn_for: &Pose,
+    now: &Pose,
+) -> Option<(RgbImage, u64)> {
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
-    assert_eq!(size / 2.0, view.centre_px(), "a picture of the size of the view");
+    if size / 2.0 != view.centre_px() {
+        return None;
+    }
     let moved = Move::between(by, view, drawn_for, now);
     let mut out = RgbImage::from_pixel(picture.width(), picture.height(), Rgb([0; 3]));
     let rows = 0..picture.height();
     let empty = rows.map(|y| move_row(picture, (0, 1), (y, 0..picture.width()), (view, &moved), &mut out)).sum();
-    (out, empty)
+    Some((out, empty))
 }
 
 #[cfg(test)]
@@ -144,11 +149,17 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_of_another_size_than_the_view_is_not_moved() {
+        let pose = Pose::IDENTITY;
+        assert_eq!(reproject(&places(320, 480), &HmdView::ntsc(), Warp::Rotation, &pose, &pose), None);
+    }
+
+    #[test]
     fn without_a_move_every_pixel_stays_and_none_is_empty() {
         let picture = places(640, 480);
         for by in [Warp::Shift, Warp::Rotation] {
             let pose = Pose::facing(rotation::from_yaw_pitch_roll(0.4, -0.2, 0.1));
-            assert_eq!(reproject(&picture, &HmdView::ntsc(), by, &pose, &pose), (picture.clone(), 0));
+            assert_eq!(reproject(&picture, &HmdView::ntsc(), by, &pose, &pose), Some((picture.clone(), 0)));
         }
     }
 
@@ -159,7 +170,8 @@ mod tests {
         let view = HmdView::ntsc();
         let (f, angle) = (view.focal_px(), 0.05_f64);
         let now = Pose::facing(rotation::about_y(angle));
-        let (moved, empty) = reproject(&places(640, 480), &view, Warp::Rotation, &Pose::IDENTITY, &now);
+        let moved = reproject(&places(640, 480), &view, Warp::Rotation, &Pose::IDENTITY, &now);
+        let (moved, empty) = moved.expect("the size of the view");
         let from = |x: u32| f * (((f64::from(x) + 0.5 - 320.0) / f).atan() - angle).tan() + 320.0;
         let mut counted = 0;
         for x in 0..640 {

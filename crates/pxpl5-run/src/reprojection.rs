@@ -1,5 +1,6 @@
 //! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
+use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -50,7 +51,7 @@ impl Every {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("strip", Self::Strip), ("line", Self::Line)];
 
     /// Number of lines in a strip: as many as in a region.
-    pub const STRIP: u32 = 128;
+    pub const STRIP: u32 = REGION_SIZE;
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///

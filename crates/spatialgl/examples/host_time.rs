@@ -1,5 +1,5 @@
 //! Processor time of a volume of 198 distinct slices of the head by one thread, with and without bins and tiles: `cargo
-//! run --release -p spatialgl --example host_time`. The benches measure wall-clock time. Processor time is reliable on
+//! run --release -p pxpl5-spatialgl --example host_time`. The benches measure wall-clock time. Processor time is reliable on
 //! a busy computer too.
 
 use pxpl5_scene::builtin;

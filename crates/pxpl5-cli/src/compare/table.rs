@@ -37,9 +37,9 @@ pub(super) fn text(comparison: &Comparison) -> String {
         "\nto light: from the head's pose to the light of the picture's middle; turn: the same of an orientation alone, which a display with\n\
          faces looks up at scan-out; predicts: from the newest measurement to the instant that a picture is drawn for; updates: new pictures a\n\
          second, of frameless rendering passes over all blocks of the screen (docs/results.md); interval: where the mean lies, by the seeds; n:\n\
-         judged pixels; best with: the predictor\n\
-         with the least error of the first seed; - : nothing to judge; ! : pictures that were due were not shown, so the\n\
-         error is of the others; + : evaluated from a later field on than the other rows. Rows with a mark are never the best.\n",
+         evaluated pixels; best with: the predictor with the least error of the first seed; - : no sample was evaluated; ! : pictures that\n\
+         were due were not shown, so the error is of the others; + : evaluated from a later field on than the other rows. Rows with a\n\
+         mark are never the best.\n",
     );
     text
 }
