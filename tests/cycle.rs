@@ -8,6 +8,7 @@ use pxpl5::{
     PictureNumber, Pipeline, Pixels, RenderingControl, Slats, TestScene, TraceHash, Viewpoint, Workstation, scene,
 };
 use pxpl5_gp::Stage;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Number of triangles in a full clump.
@@ -128,7 +129,7 @@ fn no_time_comes_from_the_table_where_code_runs() {
     let control: Arc<dyn Pipeline> = Arc::new(RenderingControl::stereo());
     let faces = |policy| Arc::new(FacePipeline::new(policy)) as Arc<dyn Pipeline>;
     let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;
-    for (preset, pipeline, scene) in [
+    let cases = [
         ("slats", slats, "full-screen:30"),
         ("small-hmd", Arc::clone(&control), "mig"),
         // The walls of a room around the viewer reach behind the near plane, so triangles are clipped.
@@ -145,7 +146,8 @@ fn no_time_comes_from_the_table_where_code_runs() {
         ("small-hmd", jitp(Viewpoint::Dual(Interpolation::Screen), true), "mig"),
         ("small-hmd", jitp(Viewpoint::Dual(Interpolation::View), false), "full-screen:30"),
         ("small-hmd", Arc::new(Frameless::new()), "molecules"),
-    ] {
+    ];
+    cases.into_par_iter().for_each(|(preset, pipeline, scene)| {
         let mut own = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
         own.add_firmware_table("jitp", Box::new(JitpTiming::PAPERS));
         let mut other = own.clone();
@@ -155,7 +157,7 @@ fn no_time_comes_from_the_table_where_code_runs() {
         other.set("jitp.interpolate_ns", 77_777).expect("known");
         let [own, other] = [own, other].map(|machine| hash_on(&machine, Arc::clone(&pipeline), scene));
         assert_eq!(own, other, "{} with {scene}", pipeline.name());
-    }
+    });
 }
 
 #[test]

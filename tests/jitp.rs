@@ -18,6 +18,7 @@ use pxpl5::{
     RenderingControl, Showing, Slats, Viewpoint,
 };
 use pxpl5_sim::TraceHash;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use support::video;
@@ -352,14 +353,14 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
     let registry = pxpl5::registry();
     for tracker in trackers {
         let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
-        for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
+        registry.pipelines().par_iter().filter(|entry| entry.compared).for_each(|entry| {
             let pipeline = (entry.build)(&PipelineSettings::default());
             let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()));
             let outcome = experiment.head(Arc::clone(&head)).fields(45).pixels(Pixels::Off).run().expect(entry.name);
             let errors = PixelErrors::of(&outcome);
             let Percentiles { mean, max, .. } = errors.pixels;
             assert!(mean.is_finite() && max.is_finite() && errors.judged > 100, "{} {errors:?}", entry.name);
-        }
+        });
     }
 }
 

@@ -3,6 +3,7 @@
 use pxpl5_lab::figures::Bench;
 use pxpl5_lab::levels::deviation_percent;
 use pxpl5_run::Level;
+use rayon::prelude::*;
 
 /// Figures that depend on the times of primitives. They include application scenes without back faces and limits of
 /// Slats.
@@ -17,7 +18,7 @@ fn with_the_times_of_the_code_both_levels_are_within_five_percent() {
         let bench = Bench::new(level).with_mig(1, 20).with_times_of_code();
         bench.measure(id).unwrap_or_else(|error| panic!("figure {id}: {error}")).value
     };
-    for id in MOVED {
+    MOVED.par_iter().for_each(|id| {
         let [table, cycle] = [Level::Transaction, Level::Cycle].map(|level| at(level, id));
         assert!(table.is_finite() && cycle.is_finite(), "figure {id}: {table} and {cycle}");
         let deviation = deviation_percent(table, cycle);
@@ -25,5 +26,5 @@ fn with_the_times_of_the_code_both_levels_are_within_five_percent() {
             deviation <= MOST_PERCENT,
             "figure {id}: {table} with the table, {cycle} with the code, {deviation:.1} %"
         );
-    }
+    });
 }

@@ -5,6 +5,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measured, Report};
 use pxpl5_run::{Aim, Experiment, Head, Keep, Outcome, PipelineSettings, Pixels, Raster, Registry};
 use pxpl5_scene::{Scene, builtin};
+use rayon::prelude::*;
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan, Pendulum, Synthetic, Walk};
 use tracking::predict::PredictorKind;
@@ -114,7 +115,7 @@ fn assert_same(experiment: &Experiment) {
 
 #[test]
 fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
-    experiments().iter().for_each(assert_same);
+    experiments().par_iter().for_each(assert_same);
 }
 
 /// Shorter runs for the same test: a display drawn field by field, a double-buffered display, and a display with faces.

@@ -7,6 +7,7 @@ use pxpl5_run::{
     RenderingControl, Samples, Slats, Viewpoint,
 };
 use pxpl5_scene::Scene;
+use rayon::prelude::*;
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
@@ -75,9 +76,9 @@ fn said(outcome: &Outcome) -> Vec<String> {
 
 #[test]
 fn what_is_kept_changes_nothing_that_is_said() {
-    for (name, experiment) in experiments() {
-        let everything = run(&experiment, Keep::Everything);
-        let statistics = run(&experiment, Keep::Statistics);
+    experiments().par_iter().for_each(|(name, experiment)| {
+        let everything = run(experiment, Keep::Everything);
+        let statistics = run(experiment, Keep::Statistics);
         assert_eq!(said(&everything), said(&statistics), "{name}");
         let forgotten = statistics.record().observation().forgotten;
         assert!(forgotten.before.0 > 0, "{name}: records were given up");
@@ -88,7 +89,7 @@ fn what_is_kept_changes_nothing_that_is_said() {
             &all[all.len() - statistics.pictures().len()..],
             "{name}: the last ones are kept"
         );
-    }
+    });
 }
 
 /// Returns counts of a run: the largest numbers of records and of pending events at any stop, all records that were
