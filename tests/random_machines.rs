@@ -12,28 +12,9 @@ use pxpl5::{
     Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Optimization, Outcome, Pixels,
     QUANTITIES, Results, RunError, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
 };
+use pxpl5_sim::SplitMix64;
 use serde_json::Value;
 use std::collections::BTreeMap;
-
-/// SplitMix64: a stream of numbers that follows from its seed.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ z >> 31
-    }
-
-    fn between(&mut self, least: u64, most: u64) -> u64 {
-        least + self.next() % (most - least + 1)
-    }
-
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.between(0, list.len() as u64 - 1) as usize]
-    }
-}
 
 fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name}={text}")))
@@ -55,7 +36,7 @@ const REPORTED: Sizes = Sizes { fields: (1, 60), triangles: (1, 600) };
 /// Returns an experiment and its description. Returns `None` if the machine refuses its numbers, or lacks boards for
 /// the pipeline.
 fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
-    let mut dice = Dice(round << 8 | 7);
+    let mut random = SplitMix64::new(round << 8 | 7);
     let registry = registry();
     let mut file = ExperimentFile::new();
     let mut told = Vec::new();
@@ -65,28 +46,28 @@ fn case(round: u64, sizes: Sizes) -> Option<(Experiment, String)> {
     };
     let pipelines = registry.pipelines();
     set(format!("pipeline={}", pipelines[(round % pipelines.len() as u64) as usize].name));
-    if dice.between(0, 3) == 0 {
+    if random.between(0, 3) == 0 {
         let displays = registry.displays();
-        set(format!("display={}", displays[dice.between(0, displays.len() as u64 - 1) as usize].name));
+        set(format!("display={}", displays[random.between(0, displays.len() as u64 - 1) as usize].name));
     }
-    set(format!("scene={}", dice.of(&["full-screen:2", "mig", "molecules", "typical:40", "sphere:60"])));
-    set(format!("triangles={}", dice.between(sizes.triangles.0, sizes.triangles.1)));
-    set(format!("fields={}", dice.between(sizes.fields.0, sizes.fields.1)));
-    set(format!("machine.n_gps={}", dice.of(&[2, 3, 4, 7, 13, 31])));
-    set(format!("machine.n_renderers={}", dice.of(&[1, 2, 3, 5, 9, 20])));
-    set(format!("seed={}", dice.between(1, 9)));
-    if dice.between(0, 2) == 0 {
-        set(format!("head.motion=synthetic:{}", dice.between(1, 9)));
+    set(format!("scene={}", random.element(&["full-screen:2", "mig", "molecules", "typical:40", "sphere:60"])));
+    set(format!("triangles={}", random.between(sizes.triangles.0, sizes.triangles.1)));
+    set(format!("fields={}", random.between(sizes.fields.0, sizes.fields.1)));
+    set(format!("machine.n_gps={}", random.element(&[2, 3, 4, 7, 13, 31])));
+    set(format!("machine.n_renderers={}", random.element(&[1, 2, 3, 5, 9, 20])));
+    set(format!("seed={}", random.between(1, 9)));
+    if random.between(0, 2) == 0 {
+        set(format!("head.motion=synthetic:{}", random.between(1, 9)));
     }
     let mut parameters = MachineConfig::small_hmd().parameters();
     parameters.retain(|parameter| !parameter.read_only);
-    for _ in 0..dice.between(0, 5) {
-        let parameter = &parameters[dice.between(0, parameters.len() as u64 - 1) as usize];
+    for _ in 0..random.between(0, 5) {
+        let parameter = &parameters[random.between(0, parameters.len() as u64 - 1) as usize];
         // Half of the values lie in the range of the sources, and half anywhere within the limits.
-        let bounds = dice.of(&[parameter.info.range, parameter.info.limits]);
+        let bounds = random.element(&[parameter.info.range, parameter.info.limits]);
         let (Some(least), Some(most)) = (bounds.0.whole(), bounds.1.whole()) else { continue };
-        let size = dice.between(1, 24);
-        set(format!("machine.{}={}", parameter.path, (least + dice.next() % (1 << size)).min(most)));
+        let size = random.between(1, 24);
+        set(format!("machine.{}={}", parameter.path, (least + random.bits() % (1 << size)).min(most)));
     }
     let told = format!("{round}: {}", told.join(" "));
     let plan = file.resolve().ok()?;

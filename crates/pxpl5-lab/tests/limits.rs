@@ -7,27 +7,8 @@ use pxpl5_lab::ExperimentFile;
 use pxpl5_lab::levels::summarise;
 use pxpl5_lab::limit::{LimitQuery, test_scene};
 use pxpl5_run::{Experiment, Level, TestScene};
+use pxpl5_sim::SplitMix64;
 use std::sync::Arc;
-
-/// SplitMix64, a pseudo-random number generator.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ z >> 31
-    }
-
-    fn between(&mut self, least: u64, most: u64) -> u64 {
-        least + self.next() % (most - least + 1)
-    }
-
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.between(0, list.len() as u64 - 1) as usize]
-    }
-}
 
 fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|_| panic!("{name}={text}")))
@@ -45,22 +26,22 @@ fn query(settings: &[String], scene: TestScene) -> LimitQuery {
 
 /// Returns the settings of a Slats machine with random parameters within the ranges of their sources.
 fn machine(round: u64) -> (Vec<String>, TestScene) {
-    let mut dice = Dice(round << 8 | 7);
+    let mut random = SplitMix64::new(round << 8 | 7);
     let mut settings = vec!["pipeline=slats".to_owned(), "scene=mig".to_owned()];
-    settings.push(format!("machine.n_gps={}", dice.between(1, 50)));
-    settings.push(format!("machine.n_renderers={}", dice.between(5, 24)));
-    let copy = dice.of(&["whole", "split"]);
+    settings.push(format!("machine.n_gps={}", random.between(1, 50)));
+    settings.push(format!("machine.n_renderers={}", random.between(5, 24)));
+    let copy = random.element(&["whole", "split"]);
     settings.push(format!("copy={copy}"));
-    settings.push(format!("binning={}", dice.of(&["all", "touched"])));
-    settings.push(format!("code={}", dice.of(&["1994", "1995", "optimised"])));
-    settings.push(format!("machine.ring.source_channels={}", dice.between(1, 2)));
+    settings.push(format!("binning={}", random.element(&["all", "touched"])));
+    settings.push(format!("code={}", random.element(&["1994", "1995", "optimised"])));
+    settings.push(format!("machine.ring.source_channels={}", random.between(1, 2)));
     // Split copies need two of the eight channels while messages go out. The analytic level refuses machines without
     // two free channels.
     let most_channels = if copy == "split" { 6 } else { 7 };
-    settings.push(format!("machine.ring.fifo_channels={}", dice.between(5, most_channels)));
-    settings.push(format!("machine.renderer.fifo_words={}", dice.between(400, 512)));
-    settings.push(format!("machine.gp.message_ns={}", dice.between(10_000, 25_000)));
-    (settings, dice.of(&TestScene::ALL))
+    settings.push(format!("machine.ring.fifo_channels={}", random.between(5, most_channels)));
+    settings.push(format!("machine.renderer.fifo_words={}", random.between(400, 512)));
+    settings.push(format!("machine.gp.message_ns={}", random.between(10_000, 25_000)));
+    (settings, random.element(&TestScene::ALL))
 }
 
 /// Largest difference in percent that the documents of the analytic level allow; a few triangles are also allowed. If

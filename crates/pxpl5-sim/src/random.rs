@@ -35,6 +35,24 @@ impl SplitMix64 {
         self.bits() % n
     }
 
+    /// Returns a random number from `least` to `most`.
+    ///
+    /// # Panics
+    ///
+    /// If the range is empty, or has all 2^64 numbers.
+    pub const fn between(&mut self, least: u64, most: u64) -> u64 {
+        least + self.below(most - least + 1)
+    }
+
+    /// Returns a random element of a list.
+    ///
+    /// # Panics
+    ///
+    /// If the list is empty.
+    pub const fn element<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len() as u64) as usize]
+    }
+
     /// Returns a random number from 0 to below 1, in steps of 2^-24. `f32` can represent every step exactly.
     pub const fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u32 << 24) as f32

@@ -9,27 +9,8 @@ use pphigs::RegionBinning;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Slats, Summary, TestScene};
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::SplitMix64;
 use std::sync::Arc;
-
-/// A pseudo-random number generator (SplitMix64).
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ z >> 31
-    }
-
-    fn between(&mut self, least: u64, most: u64) -> u64 {
-        least + self.next() % (most - least + 1)
-    }
-
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.between(0, list.len() as u64 - 1) as usize]
-    }
-}
 
 /// Numbers of display fields in a run. Rendering Control (first) shows a dozen frames at 20 Hz after the warm-up, Slats
 /// (second) some fields.
@@ -43,47 +24,48 @@ const FIELDS: (u64, u64) = (48, 14);
 /// Never returns [`ExperimentError::Scene`], because the scenes are built in, or [`ExperimentError::Config`], because
 /// the parameters exist.
 pub fn experiment(number: u64) -> Result<Experiment, ExperimentError> {
-    let mut dice = Dice(number << 8 | 0x1e);
-    let experiment = if number.is_multiple_of(2) { stereo(&mut dice)? } else { slats(&mut dice)? };
+    let mut random = SplitMix64::new(number << 8 | 0x1e);
+    let experiment = if number.is_multiple_of(2) { stereo(&mut random)? } else { slats(&mut random)? };
     Ok(experiment.pixels(Pixels::Off))
 }
 
-fn stereo(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
-    let machine = machine("small-hmd", dice, (4, 24))?;
+fn stereo(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
+    let machine = machine("small-hmd", random, (4, 24))?;
     // One of three kinds of scenes: the aircraft, screen-filling triangles, small triangles.
-    let scene = match dice.between(0, 2) {
+    let scene = match random.between(0, 2) {
         0 => {
             let mig = builtin("mig").map_err(|error| ExperimentError::Scene(error.to_string()))?;
-            mig.decimated(dice.between(100, 417) as usize).map_err(|error| ExperimentError::Scene(error.to_string()))?
+            mig.decimated(random.between(100, 417) as usize)
+                .map_err(|error| ExperimentError::Scene(error.to_string()))?
         }
-        1 => test_scene(TestScene::FullScreen, dice.between(1, 30) as u32),
-        _ => test_scene(TestScene::Typical, dice.between(20, 600) as u32),
+        1 => test_scene(TestScene::FullScreen, random.between(1, 30) as u32),
+        _ => test_scene(TestScene::Typical, random.between(20, 600) as u32),
     };
-    let seed = dice.between(1, 99);
+    let seed = random.between(1, 99);
     Ok(Experiment::new(machine, RenderingControl::stereo(), scene).fields(FIELDS.0).seed(seed))
 }
 
-fn slats(dice: &mut Dice) -> Result<Experiment, ExperimentError> {
-    let preset = dice.of(&["slats", "slats-1995"]);
-    let machine = machine(preset, dice, (1, 12))?;
-    let binning = dice.of(&[RegionBinning::All, RegionBinning::Touched]);
-    let program = Slats { binning, ..dice.of(&[Slats::whole(), Slats::split()]) };
+fn slats(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
+    let preset = random.element(&["slats", "slats-1995"]);
+    let machine = machine(preset, random, (1, 12))?;
+    let binning = random.element(&[RegionBinning::All, RegionBinning::Touched]);
+    let program = Slats { binning, ..random.element(&[Slats::whole(), Slats::split()]) };
     // Larger machines get larger scenes.
-    let triangles = dice.between(5, 50 + 10 * machine.n_gps as u64) as u32;
+    let triangles = random.between(5, 50 + 10 * machine.n_gps as u64) as u32;
     let scene: Scene = test_scene(TestScene::Typical, triangles);
     Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))
 }
 
 /// Changes a preset at random: its numbers of boards, and ring and FIFO parameters within the ranges of their sources.
 /// Two ring channels remain for copies, as the analytic level requires.
-fn machine(preset: &str, dice: &mut Dice, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
+fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
     let mut machine = MachineConfig::preset(preset)?;
-    machine.n_gps = dice.between(gps.0, gps.1) as usize;
-    machine.n_renderers = dice.between(5, 20) as usize;
+    machine.n_gps = random.between(gps.0, gps.1) as usize;
+    machine.n_renderers = random.between(5, 20) as usize;
     for (path, least, most) in
         [("ring.source_channels", 1, 2), ("ring.fifo_channels", 5, 6), ("renderer.fifo_words", 400, 512)]
     {
-        machine.set(path, dice.between(least, most))?;
+        machine.set(path, random.between(least, most))?;
     }
     Ok(machine)
 }
