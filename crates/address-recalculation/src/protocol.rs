@@ -72,8 +72,8 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 pub(crate) enum ArpMessage {
     /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
-    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If it is 0, the
-    /// memory swaps alone.
+    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If `together` is 0,
+    /// the memory swaps alone.
     Swap { buffer: u8, together: u8 },
     /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),

@@ -39,8 +39,8 @@ pub struct DisplayList {
 }
 
 impl DisplayList {
-    /// Sorts each structure's vertices by their first use in its triangles, so that neighbours in use are neighbours in
-    /// memory.
+    /// Sorts each structure's vertices by their first use in its triangles. Vertices that are used together then lie
+    /// together in memory.
     ///
     /// A vertex that several structures use is duplicated. A vertex that no triangle uses is dropped.
     ///
@@ -265,7 +265,7 @@ fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
 
-/// Returns the part of a range from its element `from` to before its element `to`, cut at the end of the range.
+/// Returns the elements `from` to `to - 1` of a range, without elements beyond the end of the range.
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }

@@ -135,8 +135,8 @@ fn marks(pass: &Pass) -> [u32; 3] {
 
 /// Primitives of one structure whose views are to be found.
 ///
-/// `held` is their range of indices among the primitives that the GP holds. `first` is the address of the GP's first
-/// primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
+/// `held` is the range of these primitives' indices among all primitives that the GP holds. `first` is the address of
+/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
 struct ViewSort {
     held: Range<usize>,
     first: u32,

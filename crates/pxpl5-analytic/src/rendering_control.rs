@@ -244,8 +244,8 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time between two slaves: one is the first, the other the last to finish with all tokens of a
-    /// picture.
+    /// Returns the time from the first slave that finishes all tokens of a picture to the last slave that finishes
+    /// them.
     ///
     /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
     /// renderers than slaves, a slave can finish early. The first slave finishes when each token has visited as many

@@ -44,7 +44,7 @@ pub struct Report {
     pub rotation_latency_ms: Latency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
-    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
     /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
     /// was drawn.
@@ -70,7 +70,7 @@ pub struct MemoryReport {
     pub eye_age_mm: f64,
     /// Latency of translation in ms, averaged over frames.
     ///
-    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
     /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,

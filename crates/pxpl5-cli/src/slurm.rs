@@ -34,8 +34,8 @@ pub(crate) struct Jobs<'a> {
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. The value is far above the time to start a task. It is also far below the delay that is
-/// acceptable for the last task.
+/// Seconds of work in one task. A longer task would delay the end of the sweep too much. A shorter task would not be
+/// worth the time to start it.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
@@ -106,7 +106,8 @@ impl Sample {
 }
 
 /// Returns at most `most` distinct indices of points that are spread evenly over every axis. The step between indices
-/// is the golden section of the number of points, increased until both have no common factor.
+/// is 0.618 times the number of points (golden section). The step is increased until it has no common factor with the
+/// number of points, so that no index occurs twice.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);

@@ -134,8 +134,8 @@ impl Guard {
         out
     }
 
-    /// Returns the point where an edge crosses a plane. It is computed from the end that comes first in the order of
-    /// clip coordinates.
+    /// Returns the point where an edge crosses a plane. The ends are taken in the order of their clip coordinates, so
+    /// that both triangles at a shared edge get the same point.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),

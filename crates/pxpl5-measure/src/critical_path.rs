@@ -105,7 +105,8 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is printed by name if it causes at least this share of the wait for a resource (a choice of the text alone).
+/// A board is printed by name if it causes at least this share of the wait for a resource. The value affects only the
+/// printed text.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {

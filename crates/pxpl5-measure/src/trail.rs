@@ -42,7 +42,7 @@ struct StageWork {
 const NEAR: Span = Span::from_us(20);
 
 /// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
-/// Without this rule, near ties between the port and a token count for the token.
+/// Without this rule, the token would count as the cause whenever port and token become free at nearly the same time.
 const SLACK: u64 = 4;
 
 /// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
@@ -320,7 +320,7 @@ impl<'a> Trail<'a> {
 
     /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
     ///
-    /// This work is the previous region on the same renderer, or the start of RENDER.
+    /// The returned work is the previous region on the same renderer, or the start of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let board = Some(Board::Renderer(renderer));

@@ -139,8 +139,9 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Greatest execution time of the commands that select a region for a copy. After a wait, commands with a longer
-/// execution time count as commands that draw the region. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Limit between two kinds of commands at the start of a list. If the controller has waited, a command up to this
+/// length can be the selection of the region to copy. A longer command draws the region. A selection takes 6 clocks of
+/// 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command and of the commands before it.

@@ -182,8 +182,8 @@ pub(crate) trait SimdVector: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// For each number of four bits, four lanes that are all ones where the number's bit is set. Without AVX2, processors
-/// cannot shift each lane by its own count.
+/// A mask of four lanes for each number of four bits. A lane is all ones if the corresponding bit of the number is set.
+/// Processors without AVX2 need this table, because they cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
     let mut bits = 0;

@@ -35,7 +35,8 @@ pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters whose values no source supports.
 ///
-/// Such a value lies outside the stated range of its parameter, and differs from the values of preset and pipeline.
+/// An unsupported value lies outside the stated range of its parameter, and differs from the values of preset and
+/// pipeline.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());

@@ -108,8 +108,8 @@ impl ResultWindow {
 
 /// Returns the period in which the first counted picture is due.
 ///
-/// This is the first picture due between `start` and `end` that was not shown. If all were shown, it is the first
-/// picture due at or after `steady`.
+/// The result is the first period between `start` and `end` whose due picture was not shown. If all due pictures were
+/// shown, the result is the first due period at or after `steady`.
 fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);

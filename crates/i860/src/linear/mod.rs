@@ -45,9 +45,9 @@
 //! The reserve grows for each 64 lines of distance from the first line (*slope*). No schedule thus runs out of
 //! registers.
 //!
-//! An operation without operands pushes a pipe (a *drain*) in two cases: no operation can be issued, or a value in the
-//! pipe is more urgent than the best operation by more than the *eagerness*. An operation that can be a dual operation
-//! also pushes the other pipe, if no result is lost.
+//! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
+//! In the second case, a value in the pipe is more urgent than the best operation by more than the *eagerness*. An
+//! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
 //! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes if it hits the caches.
 //! A *shake* other than 0 changes the priorities a little. Schedules of the same text then differ by some per cent. A

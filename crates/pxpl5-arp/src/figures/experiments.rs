@@ -198,8 +198,8 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of size to distance above which growth on the screen decides the validity, for one interpretation of both
-/// words.
+/// Ratio of size to distance above which growth on the screen decides the validity. The paper does not define "size"
+/// and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle that is allowed to change: of the diameter or of the radius.
@@ -215,7 +215,7 @@ pub struct SizeLimit {
 /// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
 /// sphere.
 ///
-/// The interpretations differ in the angle that is allowed to change: the diameter by the threshold, the radius by the
+/// The interpretations differ in the angle whose change is limited: the diameter by the threshold, the radius by the
 /// threshold, or the radius by twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {

@@ -233,8 +233,8 @@ impl Interpretations {
 
     /// Returns the rules of this project with their rank, counted from 1.
     ///
-    /// With a *cascade*, an update of a memory makes all faster memories due. The rank is among the rules that agree
-    /// with this project's rules in having or lacking a cascade.
+    /// With a *cascade*, an update of a memory makes all faster memories due. The ranking has two parts: rules with a
+    /// cascade, and rules without. The rank counts only within the part that contains this project's rules.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);

@@ -208,8 +208,8 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the listing of derived files. A manifest lists them only if they are written into the folder `results`, from
-/// which they derive.
+/// Returns the listing of files that are derived from a results folder, such as a report page. Such files are added to
+/// the folder's manifest only if they are written into the folder `results` itself.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {

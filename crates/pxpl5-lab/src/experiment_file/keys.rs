@@ -19,7 +19,7 @@ pub struct FileKey {
     pub applies_to: Vec<&'static str>,
 }
 
-/// Keys that exist whatever pipelines and displays the registry contains.
+/// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[(&str, &str)] = &[
     ("title", "a line for people"),
     ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),

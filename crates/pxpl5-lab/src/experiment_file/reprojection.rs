@@ -12,7 +12,7 @@ pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 /// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// A raster as its name selects it: a raster without parameters, or a device that moves pictures in a certain way.
+/// A raster as selected by its name: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),

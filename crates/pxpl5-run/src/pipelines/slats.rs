@@ -274,8 +274,8 @@ impl Pipeline for Slats {
     }
 }
 
-/// Largest number of retraces after its own retrace at which a late field can still be shown under a backup. The number
-/// covers two later retraces of the field's lines.
+/// Largest number of retraces from a late field's own retrace to the last retrace at which the field can still be shown
+/// under a backup. The lines of the field are scanned twice more within this number.
 const LATER_RETRACES: u64 = 4;
 
 /// State of the copy of a field to the display.
