@@ -101,7 +101,7 @@ impl BudgetArgs {
         let Estimate { bytes, seconds } = estimate;
         match self.excess(bytes / 1e6, seconds, advice) {
             Some(reason) => {
-                Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written")))
+                Err(CliError::failure(format!("{reason}; this is an estimate before the start, and nothing was written")))
             }
             None => Ok(()),
         }

@@ -328,9 +328,9 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
             scene(query),
         );
     }
-    let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
+    let first_miss = limit.first_miss.map_or("no size missed the goal".to_owned(), |n| format!("the first size that missed is {n}"));
     let island = limit.island.map_or(String::new(), |n| {
-        format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
+        format!("Above the first miss, {n} triangles reach the goal again.\n")
     });
     // Explain the search only if its result is not trivial.
     let row = if limit.unbroken_from < limit.triangles {

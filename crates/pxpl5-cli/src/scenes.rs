@@ -39,5 +39,5 @@ pub(crate) fn run(args: ScenesArgs) -> Result<(), CliError> {
         return print(&format!("{:#}\n", json!({"schema": "pxpl5-scenes/1", "scenes": scenes})));
     }
     let lines: String = scene::names().iter().map(|(name, about)| format!("{name:<15} {about}\n")).collect();
-    print(&format!("{lines}\nAny model file (.ply, .obj, .pdb) will do as well: pxpl5 run --scene FILE\n"))
+    print(&format!("{lines}\nA model file (.ply, .obj, .pdb) can replace a built-in scene: pxpl5 run --scene FILE\n"))
 }

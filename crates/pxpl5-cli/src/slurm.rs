@@ -238,7 +238,7 @@ impl Scripts {
 set -u
 pxpl5=${{PXPL5:-{command}}}
 out={out}
-# Exit code {BUSY}: another process writes into the shard. It is this task from before, on a node that was lost and still works.
+# Exit code {BUSY}: another process writes into the shard. It is an earlier start of this task, on a node that was lost but still runs.
 while :; do
     \"$pxpl5\" sweep {file}{sets} --out \"$out/shard-$SLURM_ARRAY_TASK_ID\" --shard \"$SLURM_ARRAY_TASK_ID/{tasks}\" \\
         --threads {threads} --resume --quiet

@@ -94,7 +94,7 @@ impl SnapshotArgs {
         // Most settings are part of the snapshot, and changing them would change the run.
         if let Some(key) = given.keys().find(|key| !KEYS_BESIDE_SNAPSHOT.iter().any(|allowed| key.starts_with(allowed)))
         {
-            let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
+            let message = format!("{key} comes from the checkpoint; with --restore, only fields, pixels, measure and output can be set");
             return Err(CliError::usage(message));
         }
         let name = path.display().to_string();

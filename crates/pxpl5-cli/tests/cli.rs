@@ -470,7 +470,7 @@ fn an_unusable_snapshot_is_refused_with_the_reason() {
     let text = std::fs::read_to_string(folder.0.join("s.json")).expect("saved");
     for (name, contents, says) in [
         ("cut.json", text[..text.len() / 2].to_owned(), "not whole JSON"),
-        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: its checksum"),
+        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: expected checksum"),
         ("newer.json", text.replace("snapshot/1", "snapshot/9"), "found pxpl5-snapshot/9"),
         ("report.json", "{\"schema\": \"pxpl5-report/1\"}".to_owned(), "found pxpl5-report/1"),
         ("picture.png", "\u{89}PNG".to_owned(), "no snapshot"),
@@ -480,7 +480,7 @@ fn an_unusable_snapshot_is_refused_with_the_reason() {
     }
     let path = folder.0.join("s.json");
     let path = path.to_str().expect("text");
-    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed is in the snapshot"]);
+    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed comes from the checkpoint"]);
     refused(&["run", "--restore", path, "--fields", "9"], 2, &["expected at least 10"]);
     refused(&["run", "--restore", "missing.json"], 1, &["missing.json"]);
     refused(&with(&RC, &["--save-at", "24", "--save", "s"]), 2, &["from 1 to 23, found 24"]);

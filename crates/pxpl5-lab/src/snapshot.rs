@@ -57,7 +57,7 @@ pub struct Snapshot {
 #[non_exhaustive]
 pub enum SnapshotError {
     /// The file is not a snapshot.
-    #[error("{file}: this is no snapshot: {reason}")]
+    #[error("{file}: this is not a checkpoint: {reason}")]
     Foreign {
         /// Name of the file, as given by the user.
         file: String,
@@ -65,7 +65,7 @@ pub enum SnapshotError {
         reason: String,
     },
     /// The snapshot has a layout of another version.
-    #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
+    #[error("{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
     Version {
         /// Name of the file, as given by the user.
         file: String,
@@ -75,7 +75,7 @@ pub enum SnapshotError {
         found: String,
     },
     /// The snapshot was changed after it was written.
-    #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
+    #[error("{file}: the checkpoint is damaged: expected checksum {expected}, found {found}")]
     Damaged {
         /// Name of the file, as given by the user.
         file: String,
@@ -94,7 +94,7 @@ pub enum SnapshotError {
     },
     /// The repeated run differs from the saved run.
     #[error(
-        "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
+        "{file}: the repeated run differs from the saved run (version {version}): {what}: expected {expected}, found {found}"
     )]
     Differs {
         /// Name of the file, as given by the user.

@@ -43,7 +43,7 @@ pub enum ExperimentError {
     },
     /// The recording of the head's motion ends before the end of the run.
     #[error(
-        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or say what comes after its end \
+        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or set the behaviour after its end \
          (head.end = \"hold\" or \"loop\")",
         seconds(*recording),
         seconds(*run)

@@ -53,7 +53,7 @@ pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
     let name = pipeline.name();
     Some(format!(
-        "{name} at the cycle level: there is no i860 code for {what}: that takes the times of the table (gp.*)"
+        "{name} at the cycle level: there is no i860 code for {what}; this work takes the times of the timing table (gp.*)"
     ))
 }
 

@@ -158,7 +158,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     ///
     /// At the cycle level, work without code takes its times from the timing table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
-        Some("what its firmware does besides messages")
+        Some("all work of its firmware except messages")
     }
 
     /// Loads the pipeline's programs onto the boards.

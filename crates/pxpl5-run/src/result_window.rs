@@ -18,10 +18,10 @@ use serde::Serialize;
 pub const WARM_UP_PERIODS: u64 = 8;
 
 /// Rule for the window of a run, in words for readers of a report.
-pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates are over one window: from the 9th period of the display, or \
-    from the turn of the fifth picture if that is later, to the last period that was over; where a picture due in the first half of the \
-    run was not shown, from the first such picture, since those before it may owe their time to queues that were still empty; the first \
-    four pictures have no latency and no error";
+pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates cover one window; it begins with the 9th period of the \
+    display, or with the first period of the fifth picture if that is later, and it ends with the last complete period; if a picture \
+    due in the first half of the run was not shown, it begins with the first such picture, because earlier pictures may have profited \
+    from empty queues; the first four pictures have no latency and no error";
 
 /// Periods of the first display over which all results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -140,7 +140,7 @@ impl<'a> HeadComparison<'a> {
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
         let wrong = |found: String| VolumeError::Missing {
             what: "latency",
-            expected: "0 to 10000 ms (--latency; Pixel-Planes 5 has none of its own here)".to_owned(),
+            expected: "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)".to_owned(),
             found,
         };
         // The default is the latency of the volume itself.

@@ -203,7 +203,7 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     let before = Manifest::read(folder)?;
     if before.as_ref().is_some_and(|before| before.command() == Manifest::SWEEP) || folder.join(ROWS_FILE).exists() {
         let folder = folder.display();
-        return Err(CliError::usage(format!("{folder}: there are rows of a sweep here; choose another folder")));
+        return Err(CliError::usage(format!("{folder}: the folder holds rows of a sweep; choose another folder")));
     }
     Ok(before)
 }
@@ -259,7 +259,7 @@ impl OutputFile {
     fn begin(path: &Path, option: &'static str, results: Option<&Path>) -> Result<Self, CliError> {
         if path.file_name().is_none() || path.is_dir() {
             let path = path.display();
-            return Err(CliError::usage(format!("{option}: {path} is no file name; give the name of a file")));
+            return Err(CliError::usage(format!("{option}: expected the name of a file, found {path}")));
         }
         let place = Place::file(option, path);
         let target = Target::of(path, &place)?;

@@ -195,11 +195,11 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
         ),
         ("lit voxels", report.lit_voxels.to_string()),
         ("connected", format!("{:.1} %", report.connected_percent)),
-        ("outside the volume", format!("{} with a corner there", count_of(report.outside_volume, "primitive"))),
-        ("model of time", model_of_time(report)),
-        ("volumes a second", volumes_a_second(report)),
+        ("outside the volume", format!("{} with a corner outside", count_of(report.outside_volume, "primitive"))),
+        ("modelled times", model_of_time(report)),
+        ("volumes per second", volumes_a_second(report)),
         ("volume hash", report.volume_hash.clone()),
-        ("drawn here in", format!("{:.2} s", report.host_seconds)),
+        ("host time", format!("{:.2} s", report.host_seconds)),
     ];
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<20} {value}");

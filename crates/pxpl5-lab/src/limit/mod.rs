@@ -152,8 +152,8 @@ impl LimitQuery {
         }
         let (shown, fields) = (outcome.shown(), self.criterion.fields);
         Err(ExperimentError::Scene(format!(
-            "goal: expected a scene whose updates have a rate, to reach {hz} Hz; found one that is drawn and stays right (updates in \
-             {fields} fields: {shown}, fewer than two of them behind start-up)"
+            "goal: expected a scene with a rate of updates, to reach {hz} Hz; found a scene that is drawn once and stays right \
+             (updates in {fields} fields: {shown}, fewer than two of them after the warm-up)"
         )))
     }
 

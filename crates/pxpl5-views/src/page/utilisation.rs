@@ -41,7 +41,7 @@ fn boards(utilisation: &Value) -> Vec<Element> {
     let of_ms = decimal(&utilisation["of_ms"], 1);
     vec![
         heading("How busy the boards were"),
-        paragraph(format_args!("Shares of {of_ms} ms, from switching on to the end of the run.")),
+        paragraph(format_args!("Shares of {of_ms} ms, from the start of the machine to the end of the run.")),
         table(&["boards", "mean", "busiest", "its number", "idle boards", "of that"], rows),
     ]
 }

@@ -51,7 +51,7 @@ pub struct PendulumRig {
 #[non_exhaustive]
 pub enum RigError {
     /// The tracker stopped reporting, or the host detected too few passes of the pendulum.
-    #[error("expected {expected} low points, the host saw {found}")]
+    #[error("expected {expected} low points, the host detected {found}")]
     TooFewPasses {
         /// Number of passes that the measurement needs.
         expected: usize,
