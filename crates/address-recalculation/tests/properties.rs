@@ -230,7 +230,7 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
 /// Checks that lookups, which share a buffer in each thread, do not affect each other. Earlier faces of another size or
 /// with other contents must leave no traces.
 #[test]
-fn a_look_does_not_depend_on_the_looks_before() {
+fn a_snapshot_does_not_depend_on_earlier_snapshots() {
     let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
         move || {
             let timing = ArpTiming { face_texels, display_memories: 1, ..ArpTiming::PAPERS };

@@ -100,9 +100,9 @@ impl BudgetArgs {
     pub(crate) fn admit_estimate(&self, estimate: Estimate, advice: &str) -> Result<(), CliError> {
         let Estimate { bytes, seconds } = estimate;
         match self.excess(bytes / 1e6, seconds, advice) {
-            Some(reason) => {
-                Err(CliError::failure(format!("{reason}; this is an estimate before the start, and nothing was written")))
-            }
+            Some(reason) => Err(CliError::failure(format!(
+                "{reason}; this is an estimate before the start, and nothing was written"
+            ))),
             None => Ok(()),
         }
     }

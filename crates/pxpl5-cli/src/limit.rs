@@ -328,10 +328,10 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
             scene(query),
         );
     }
-    let first_miss = limit.first_miss.map_or("no size missed the goal".to_owned(), |n| format!("the first size that missed is {n}"));
-    let island = limit.island.map_or(String::new(), |n| {
-        format!("Above the first miss, {n} triangles reach the goal again.\n")
-    });
+    let first_miss =
+        limit.first_miss.map_or("no size missed the goal".to_owned(), |n| format!("the first size that missed is {n}"));
+    let island =
+        limit.island.map_or(String::new(), |n| format!("Above the first miss, {n} triangles reach the goal again.\n"));
     // Explain the search only if its result is not trivial.
     let row = if limit.unbroken_from < limit.triangles {
         format!("All sizes from {} to {} were tried, smaller ones in part.\n", limit.unbroken_from, limit.triangles)

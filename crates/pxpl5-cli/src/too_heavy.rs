@@ -23,7 +23,9 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             match (form.estimates.fields_needed)(&experiment) {
                 Some(needed) if needed <= fields.max(SHORT_RUN) => return None,
                 Some(needed) => {
-                    format!("the analytic level predicts that the first picture with a latency is shown after about {needed} fields")
+                    format!(
+                        "the analytic level predicts that the first picture with a latency is shown after about {needed} fields"
+                    )
                 }
                 // The closed form covers only some machines and displays. Without a prediction there is no warning.
                 None if (form.summary)(&experiment).is_ok_and(|summary| summary.updates_hz.is_none()) => {

@@ -439,7 +439,7 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
 }
 
 #[test]
-fn a_run_goes_on_from_a_snapshot_to_the_same_trace() {
+fn a_run_continued_from_a_checkpoint_has_the_same_trace() {
     let folder = Folder::new("snapshot");
     let whole = json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json", "--seed", "4"])));
     for more in [&[][..], &["--pixels", "off"], &["--pixels", "all", "--threads", "2"]] {
@@ -464,7 +464,7 @@ fn a_run_goes_on_from_a_snapshot_to_the_same_trace() {
 }
 
 #[test]
-fn an_unusable_snapshot_is_refused_with_the_reason() {
+fn an_unusable_checkpoint_is_refused_with_the_reason() {
     let folder = Folder::new("bad-snapshot");
     json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json"])));
     let text = std::fs::read_to_string(folder.0.join("s.json")).expect("saved");
@@ -488,7 +488,7 @@ fn an_unusable_snapshot_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
+fn a_checkpoint_of_a_changed_model_file_is_refused() {
     let folder = Folder::new("changed");
     folder.file("m.ply", ply("0 0 0", "2", 1));
     let args =

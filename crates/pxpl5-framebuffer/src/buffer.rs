@@ -223,7 +223,7 @@ mod tests {
     /// A search removes exactly the regions of which no pixel is visible. The number of kept regions stays below the
     /// number of visible regions plus twice the number of regions that the last search kept.
     #[test]
-    fn what_is_forgotten_is_what_later_regions_have_covered() {
+    fn discarded_regions_are_exactly_those_that_later_regions_cover() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];

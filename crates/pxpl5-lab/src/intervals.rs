@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn the_figure_of_the_scenes_has_no_interval_and_is_not_judged_by_one() {
+    fn the_figure_of_the_scenes_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
         let mut rows = [FigureRow::new(figure, FigureValue::from(9.0))];
         fill(&mut rows, &[]);

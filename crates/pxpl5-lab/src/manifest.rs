@@ -112,7 +112,9 @@ impl Manifest {
             }
             Err(error) => return Err(ManifestError::Io { path: found, reason: error.to_string() }),
             // Reading a pipe would block.
-            Ok(there) if !there.is_file() => return Err(no_manifest("something that is not a regular file".to_owned())),
+            Ok(there) if !there.is_file() => {
+                return Err(no_manifest("something that is not a regular file".to_owned()));
+            }
             Ok(_) => {}
         }
         let bytes =

@@ -45,7 +45,8 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
     Quantity { name, definition, value: Value::OfRun(value) }
 }
 
-const LATENCY: &str = "latency by the definition of the pipeline (see the report), over all complete pictures in the window";
+const LATENCY: &str =
+    "latency by the definition of the pipeline (see the report), over all complete pictures in the window";
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
@@ -70,9 +71,11 @@ pub static QUANTITIES: [Quantity; 55] = [
     of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().told().mean),
     of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().told().sd),
     // NaN counts as no value: see `Measure::of`.
-    of_summary("updates_hz", "complete pictures shown per second, over the window; none if fewer than two were shown", |s| {
-        s.updates_hz.unwrap_or(f64::NAN)
-    }),
+    of_summary(
+        "updates_hz",
+        "complete pictures shown per second, over the window; none if fewer than two were shown",
+        |s| s.updates_hz.unwrap_or(f64::NAN),
+    ),
     of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
         of_due(s, DuePictures::not_shown)
     }),
@@ -143,9 +146,11 @@ pub static QUANTITIES: [Quantity; 55] = [
         "share of the run in which the CPUs of graphics processors were busy, mean over all, 0 to 1",
         |_, r| Some(r.utilisation.as_ref()?.gps.busy.mean),
     ),
-    of_run("gp_busy.max", "share of the run in which the CPU of the busiest graphics processor was busy, 0 to 1", |_, r| {
-        Some(r.utilisation.as_ref()?.gps.busy.max)
-    }),
+    of_run(
+        "gp_busy.max",
+        "share of the run in which the CPU of the busiest graphics processor was busy, 0 to 1",
+        |_, r| Some(r.utilisation.as_ref()?.gps.busy.max),
+    ),
     of_run(
         "renderer_busy.mean",
         "share of the run in which renderers executed commands, mean over all, 0 to 1",

@@ -37,10 +37,15 @@ impl TooHeavy {
 }
 
 fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
-    let search = format!("`pxpl5 limit --pipeline {pipeline}` finds the number of test triangles that it draws in time");
+    let search =
+        format!("`pxpl5 limit --pipeline {pipeline}` finds the number of test triangles that it draws in time");
     match triangles_in_time {
-        Some(0) => format!("the analytic level predicts that not even one triangle of this scene would be in time; {search}"),
-        Some(some) => format!("the analytic level predicts that about {some} triangles would be in time (--triangles {some})"),
+        Some(0) => {
+            format!("the analytic level predicts that not even one triangle of this scene would be in time; {search}")
+        }
+        Some(some) => {
+            format!("the analytic level predicts that about {some} triangles would be in time (--triangles {some})")
+        }
         None => search,
     }
 }

@@ -56,7 +56,7 @@ fn run(pipeline: impl Pipeline + 'static, fields: u64) -> ExperimentError {
 }
 
 #[test]
-fn a_run_of_any_length_in_which_nobody_can_go_on_is_a_deadlock() {
+fn a_run_of_any_length_in_which_all_programs_wait_is_a_deadlock() {
     for fields in [1, 2, 12, 119, 200] {
         match run(Waiting, fields) {
             ExperimentError::Run { error: RunError::Deadlock { blocked, .. }, partial } => {

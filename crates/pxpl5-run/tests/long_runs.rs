@@ -74,7 +74,7 @@ fn said(outcome: &Outcome) -> Vec<String> {
 }
 
 #[test]
-fn what_is_kept_changes_nothing_that_is_said() {
+fn discarding_records_changes_no_result() {
     for (name, experiment) in experiments() {
         let everything = run(&experiment, Keep::Everything);
         let statistics = run(&experiment, Keep::Statistics);

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_longer_than_can_be_said_takes_as_long_as_can_be_said() {
+    fn times_beyond_the_largest_time_are_limited_to_it() {
         assert_eq!(nearest_fraction(Fraction { over: 100_000, under: 1 }), Fraction { over: 65_535, under: 1 });
     }
 }

@@ -71,7 +71,7 @@ fn head(text: &mut String, rows: &[Row]) {
         "# Address recalculation and priority rendering: the papers' figures\n\n\
          The command `pxpl5 arp figures --write docs/address-recalculation.md` generates this file. A test fails if the file is out of date.\n\n\
          The experiments use the scene `gallery` with a plan of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows the path of the\n\
-         scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal. The column *standing* has these values:\n\n\
+         scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal. The column *provenance* has these values:\n\n\
          - *checked*: The row is simulated, and no number was fitted.\n\n\
          - *fitted*: One number was chosen to reproduce this row, and this row only.\n\n\
          - *depends on the interpretation*: The row is met if the interval of all interpretations contains the printed number.\n\n\
@@ -91,7 +91,7 @@ fn head(text: &mut String, rows: &[Row]) {
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let mut text =
-        "| | # | statement | published | ours | unit | error | standing | |\n|---|---|---|---|---|---|---|---|---|\n"
+        "| | # | statement | published | ours | unit | error | provenance | |\n|---|---|---|---|---|---|---|---|---|\n"
             .to_owned();
     rows.iter().for_each(|row| line(&mut text, row));
     text

@@ -51,7 +51,10 @@ const COMMON: &[(&str, &str)] = &[
         "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in the run) or \
           given (those of tracking.filter)",
     ),
-    ("head.judge_at", "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content"),
+    (
+        "head.judge_at",
+        "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content",
+    ),
     (
         "head.raster",
         "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose by shift, \

@@ -114,7 +114,7 @@ fn copying_is_a_stage_from_the_first_message_on() {
 
 /// The limit of discarding is counted in periods of the first display.
 #[test]
-fn what_is_before_an_instant_can_be_given_up() {
+fn records_before_an_instant_can_be_discarded() {
     let (mut machine, [left, right]) = told(&[
         arrived(150, 0, 1),
         arrived(160, 0, 1),

@@ -243,7 +243,7 @@ fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
 }
 
 #[test]
-fn savings_and_pixels_change_no_time_and_no_texel() {
+fn optimizations_and_pixels_change_no_time_and_no_texel() {
     let lazy = after(&ball(), 16);
     let faces = memory(lazy.record(), 0).shown_faces();
     assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 50, "something was drawn");
