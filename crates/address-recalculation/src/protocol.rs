@@ -85,6 +85,7 @@ pub(crate) enum ArpMessage {
 ///
 /// [`ArpError`] describes the expected and the found content.
 pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpError> {
+    // Swap requests have the same words for all displays.
     if let Some(buffer) = read_swap_request(words) {
         return Ok(ArpMessage::Swap { buffer: checked_buffer(buffer.into())?, together: 0 });
     }
@@ -99,6 +100,7 @@ pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpEr
         }
         [MATRIX, components @ ..] => {
             let components: [Word; 9] = components.try_into().map_err(|_| wrong("9 components", &components.len()))?;
+            // The components are single-precision numbers, row by row.
             let row = |first: usize| [0, 1, 2].map(|i| f64::from(f32::from_bits(components[first + i])));
             Ok(ArpMessage::Matrix([row(0), row(3), row(6)]))
         }

@@ -178,6 +178,7 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let due = model.due(times, fields);
     let shown = due.map_or(0, |due| due.shown);
     Summary {
+        // Every shown picture has a latency of exactly one field.
         latencies_ms: std::iter::repeat_n(field_ms, shown as usize).collect(),
         field_ms,
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),

@@ -75,6 +75,7 @@ impl<'a> Simulation<'a> {
     /// Same as [`Settings::check`].
     pub fn new(world: &'a World, settings: &Settings) -> Result<Self, ExperimentError> {
         settings.check()?;
+        // With segmentation the policy assigns segments, without it whole objects.
         let units = units(world, settings.is_segmented);
         let policy = match settings.policy {
             PolicyKind::Full => Policy::Full,

@@ -152,9 +152,11 @@ impl LimitArgs {
                 scene.name()
             )));
         }
+        // The experiment without --over gives the defaults of length, range and goal.
         let first = file.resolve()?;
         let fields = self.fields.unwrap_or(first.limit.fields).max(LEAST_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
+        // A missing end of the range comes from the sources of the parameter.
         let usual = || OverQuery::usual_values(&first, key);
         let values = match (self.from, self.to) {
             (None, None) => usual()?,
@@ -166,12 +168,14 @@ impl LimitArgs {
                         to.map_or_else(|| usual().map(|v| v.last()), Ok)?,
                     ),
                 };
+                // Two whole numbers as ends mean that only whole numbers are tried. Numbers below 1e15 convert exactly.
                 let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < 1e15;
                 let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
                 let refused = || CliError::usage(format!("--from and --to: expected a range, found {from} to {to}"));
                 values.ok_or_else(refused)?
             }
         };
+        // The largest experiment must be valid and within the budget before the search starts.
         let mut last = file.clone();
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
@@ -247,6 +251,7 @@ fn over_text(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> String {
         (true, None, Some(most)) => format!("at most {}", text(most)),
         (true, Some(least), Some(most)) => format!("from {} to {}", text(least), text(most)),
     };
+    // The cause is known only for a value that missed the goal.
     let because = match (&limit.because, limit.missed_at) {
         (Some(because), Some(at)) => format!(": with {}, {because}", text(at)),
         _ => String::new(),

@@ -200,6 +200,7 @@ fn lamp() -> Scene {
         hinge: None,
         culls_back_faces: false,
     };
+    // Full ambient light makes the wall white from every direction, and the background stays black.
     let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
     Scene::new(SceneParts {

@@ -91,6 +91,7 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     if span == Span::ZERO {
         return None;
     }
+    // Sum the time of each board, to name the board that causes most of the wait.
     let mut boards: BTreeMap<Board, Span> = BTreeMap::new();
     of().filter_map(|step| Some((step.board?, step.span()))).for_each(|(board, span)| {
         *boards.entry(board).or_default() += span;
@@ -128,6 +129,7 @@ impl fmt::Display for PathPart {
 fn links_text(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;
+    // A link is a sequence of steps with the same resource and board.
     for step in steps {
         let kind = (step.resource, step.board);
         match links.last_mut().filter(|_| last == Some(kind)) {

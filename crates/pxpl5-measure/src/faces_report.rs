@@ -69,6 +69,7 @@ impl FacesReport {
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
         let timing = &display.config().timing;
+        // A display that lacks a counter has counted nothing.
         let counted = |name: &str| {
             let counters = outcome.record().display().counters();
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)

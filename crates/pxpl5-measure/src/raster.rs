@@ -98,6 +98,7 @@ impl<'a> RasterOffsets<'a> {
             }
             Raster::Vdrt => {}
         }
+        // VDRT computes the offset of each field from the pose for which its picture was drawn.
         let shown = Shown::of_run(&run, head);
         let mut vdrt = Vdrt::new(Estimator::new(head, None), display);
         let offsets = PeriodNumber::FIRST.until(run.until).map(|field| {

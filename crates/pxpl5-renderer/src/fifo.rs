@@ -479,11 +479,13 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
+                    // A word enters when the word one FIFO depth before it has left.
                     let room =
                         if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;
                     self.held.push_back(Time(u64::MAX));
                 }
+                // A command starts when it is complete and the previous command has ended. All its words then leave.
                 let start = self.free_at.max(self.last_word_at);
                 let n = self.held.len();
                 self.held.iter_mut().skip(n - *words as usize).for_each(|left| *left = start);

@@ -442,6 +442,7 @@ mod tests {
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };
+            // Position of lane k in an array whose rows hold four lanes each.
             let at = |k: usize| k / FOUR * ROW + k % FOUR;
             let ones = |truth: bool| -i32::from(truth);
             let passes = |k: usize| k < lanes && a[k] as i32 >= 0 && (b[k] as i32) < c[k] as i32;
@@ -449,6 +450,7 @@ mod tests {
             let mut stored = *b;
             let mut stored_fours = *rows;
             let mut mask = [7; 16];
+            // Stores change only the lanes that pass the test.
             for k in 0..lanes {
                 stored[k] = if passes(k) { a[k] } else { c[k] };
                 stored_fours[at(k)] = stored[k];

@@ -110,12 +110,14 @@ impl Picture {
             let place = |name| gl.get_uniform_location(program, name);
             gl.uniform_3_f32(place("towards_light").as_ref(), x, y, z);
             gl.uniform_2_f32(place("light").as_ref(), ambient, diffuse);
+            // Copy the mesh into buffers of OpenGL once.
             gl.bind_vertex_array(Some(gl.create_vertex_array()?));
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(gl.create_buffer()?));
             gl.buffer_data_u8_slice(glow::ARRAY_BUFFER, &held, glow::STATIC_DRAW);
             gl.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(gl.create_buffer()?));
             gl.buffer_data_u8_slice(glow::ELEMENT_ARRAY_BUFFER, &corners, glow::STATIC_DRAW);
             let stride = VERTEX_BYTES as i32;
+            // Describe the layout of a vertex: position, normal and colour.
             for (index, kind, normalised, offset) in
                 [(0, glow::FLOAT, false, 0), (1, glow::FLOAT, false, 12), (2, glow::UNSIGNED_BYTE, true, 24)]
             {
@@ -169,6 +171,7 @@ unsafe fn target(gl: &glow::Context) -> Fallible<()> {
 unsafe fn program(gl: &glow::Context) -> Fallible<glow::Program> {
     unsafe {
         let program = gl.create_program()?;
+        // Compile both shaders, then link them.
         for (kind, source) in [(glow::VERTEX_SHADER, VERTEX), (glow::FRAGMENT_SHADER, FRAGMENT)] {
             let shader = gl.create_shader(kind)?;
             gl.shader_source(shader, source);

@@ -115,6 +115,7 @@ fn errors_svg(study: &HeadStudy, motion: &str) -> String {
         across: "time, s".to_owned(),
         up: "angle seen by the eye, degrees".to_owned(),
     };
+    // A missing value is a gap in the curve.
     let curve = |name: &str, value: &dyn Fn(&HeadSample) -> Option<f64>| Curve {
         name: name.to_owned(),
         points: study.samples.iter().map(|sample| (sample.time_s, value(sample).unwrap_or(f64::NAN))).collect(),

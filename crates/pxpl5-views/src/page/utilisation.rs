@@ -58,6 +58,7 @@ fn path(path: &Value) -> Vec<Element> {
             cell(part["board"].as_str().unwrap_or_default()),
         ])
     });
+    // The chain goes backwards in time, so the arrows point to the earlier work.
     let chain = list(&path["chain"]).iter().map(plain).collect::<Vec<_>>().join(" \u{2190} ");
     vec![
         heading("What limits the latency"),
