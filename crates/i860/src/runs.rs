@@ -1,10 +1,10 @@
 //! The clocks of a basic block, counted run by run. A *run* is a part of a block whose instructions and data are all in
 //! the caches. The remembered clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
-//! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch and plus
-//! 2 after its issue. A run ends at one of three places: before an access that needs the bus, before a line that the
-//! instruction cache does not hold, or at the end of the executed code. After an access that needs the bus, the next
-//! run begins with the scoreboard after this access.
+//! A *place* is a position in a block. It is three times the index of an instruction or pair, plus 1 after its fetch
+//! and plus 2 after its issue. A run ends before an access that needs the bus, or before a line that the instruction
+//! cache does not hold. Otherwise it ends with the executed code. After an access that needs the bus, the next run
+//! begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;

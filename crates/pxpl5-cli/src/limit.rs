@@ -55,7 +55,7 @@ pub(crate) struct LimitArgs {
     /// sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
-    /// Greatest value of --over that is tried; default: for numbers of boards the number in the largest preset,
+    /// Greatest value of --over that is tried. Default: for numbers of boards the number in the largest preset,
     /// otherwise the greatest value that the sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,

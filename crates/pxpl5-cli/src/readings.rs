@@ -14,10 +14,10 @@ use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
 ///
-/// Every combination of answers is simulated, with one machine for all figures. The questions are: which latency is
-/// averaged, how fields were counted, how many finished regions a renderer keeps, what the master does meanwhile with a
-/// renderer that has finished its region, which machine drew the application scenes, and whether back faces were
-/// culled.
+/// Every combination of answers is simulated, with one machine for all figures. Some questions concern the measurement:
+/// which latency is averaged, how fields were counted, which machine drew the application scenes, and whether back
+/// faces were culled. The others concern the firmware: how many finished regions a renderer keeps, and what the master
+/// does meanwhile with the renderer.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 readings

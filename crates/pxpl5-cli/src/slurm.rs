@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Slurm restarts a task after its node was lost. The restarted task keeps the rows that the earlier task has written.
-//! If the earlier task still runs on a node that does not answer, the restarted task waits, because two processes must
-//! not write into one folder.
+//! The earlier task may still run on a node that does not answer. The restarted task then waits, because two processes
+//! must not write into one folder.
 //!
 //! The scripts request time and memory according to estimates of a sample of points, which are spread evenly over the
 //! parameter space ([`Resources`]).

@@ -40,7 +40,7 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message in four steps: spends the CPU time of its reception, does `work`, sends `messages` one by one,
+    /// Answers a message. The function spends the CPU time of its reception, does `work`, sends `messages` one by one,
     /// and sends `last` in the background. Each of `messages` waits until the clump buffer (the memory for outgoing
     /// messages) is free. The program does not wait for `last`.
     ///

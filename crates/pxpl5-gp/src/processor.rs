@@ -133,10 +133,10 @@ const LINK: usize = 1;
 /// write by Rust code counts as a write by i860 code before the call: it takes no time and changes no cache.
 ///
 /// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
-/// calls have the code, arguments and parameters of an earlier call; while the head moves, none have. (The sample has
-/// 188 calls of Slats with 110 triangles and 2,800 calls of Rendering Control with the aircraft, over 48 fields each.)
-/// But a call with equal inputs finds other lines in the caches, because their replacement is pseudo-random, and
-/// another phase of the memory refresh. The clocks of short runs of instructions can be reused: see
+/// calls have the code, arguments and parameters of an earlier call. While the head moves, none have. The sample covers
+/// 48 fields each: 188 calls of Slats with 110 triangles and 2,800 calls of Rendering Control with the aircraft.
+/// However, a call with equal inputs finds other lines in the caches, because their replacement is pseudo-random. It
+/// also finds another phase of the memory refresh. The clocks of short runs of instructions can be reused: see
 /// [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,

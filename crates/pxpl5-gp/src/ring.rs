@@ -10,9 +10,9 @@
 //! The original software is not published. kernels/ring_rules.md states the assumptions about the original software,
 //! and how the code was written.
 //!
-//! Before each call, Rust code does the work of the interface's DMA. The Rust code puts a message into the next receive
-//! buffer when the message software begins, because the board's inbox has no limited number of buffers. When a chain is
-//! built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code does the work of the interface's DMA. The board's inbox has no limited number of
+//! buffers. The Rust code therefore puts a message into the next receive buffer when the message software begins. When
+//! a chain is built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};

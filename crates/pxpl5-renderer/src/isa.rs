@@ -9,8 +9,8 @@
 //! # Words
 //!
 //! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand names a *field* of pixel
-//! memory in 16 bits: bit 15 signed, bit 14 relative to the context's base, bits 13..8 width - 1, bits 7..0 the
-//! address of the least significant bit. Unused bits must be zero.
+//! memory in 16 bits. Bit 15: the field is signed. Bit 14: the address is relative to the context's base. Bits 13..8:
+//! width - 1. Bits 7..0: address of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|

@@ -56,8 +56,8 @@ impl Every {
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
     /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
-    /// (range 1,000 to 4,000). It is 500 for one pose per strip, and 100 for one pose per line, because a pipeline
-    /// beside the scan holds a few lines (range 64 to 1,000).
+    /// (range 1,000 to 4,000). The latency is 500 for one pose per strip and 100 for one pose per line, because a
+    /// pipeline beside the scan holds a few lines (64 to 1,000).
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

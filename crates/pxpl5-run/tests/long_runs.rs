@@ -91,8 +91,8 @@ fn discarding_records_changes_no_result() {
     }
 }
 
-/// Returns counts of a run: the largest numbers of records and of pending events at any stop, all records that were
-/// read, all events, and the poses in memory at the end.
+/// Returns counts of a run. The counts are the largest numbers of records and of pending events at any stop, all
+/// records that were read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
     let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {

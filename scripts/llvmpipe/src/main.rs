@@ -84,7 +84,7 @@ fn context() -> Fallible<glow::Context> {
     Ok(gl)
 }
 
-/// What is drawn.
+/// The mesh and the views that are drawn.
 struct Picture {
     indices: i32,
     matrices: Vec<[f32; 16]>,

@@ -24,7 +24,7 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
     /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the cube faces of all display
-    /// memories, and what the eye sees through its lens and (up to 170 degrees) without a lens. Other pictures show the
+    /// memories, and the view of the eye with its lens and (up to 170 degrees) without a lens. Other pictures show the
     /// memory chosen at each pixel, errors, cells from above, cuts as wires, and updates. The last ones show the scene
     /// torn at cuts, warped, and without cuts.
     #[arg(long, value_name = "DIR")]

@@ -23,8 +23,8 @@ use std::path::PathBuf;
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning,
-    /// the tiles of all batches, and a picture as an eye sees the volume.
+    /// Write into this folder: report.json, slices.csv and pictures. The pictures are the sheet of all slices, slice 0
+    /// before and after halftoning, the tiles of all batches, and the volume as an eye sees it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.

@@ -8,9 +8,9 @@
 //!   Hints --near: bracket, bisect--> first miss --sizes below it, doubtful sizes--> least size that misses
 //! ```
 //!
-//! A larger scene can reach a goal that a smaller scene misses, because a nearly empty clump (group of triangles) costs
-//! as many messages as a full one. The search therefore also tries sizes below the result of the bisection, and the
-//! smallest miss counts. [`most`] states the guarantee.
+//! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
+//! triangles) costs as many messages as a full one. The search therefore also tries sizes below the result of the
+//! bisection, and the smallest miss counts. [`most`] states the guarantee.
 
 mod over;
 mod search;
@@ -169,8 +169,8 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// A model would have to be thinned out and viewed for each size, which takes as long at the analytic level as at
-    /// any other level. Small triangles therefore stand in for the model.
+    /// For a model, each size needs a decimated scene and its views. This takes as long at the analytic level as at any
+    /// other level. Small triangles therefore stand in for the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();

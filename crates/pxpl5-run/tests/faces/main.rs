@@ -141,8 +141,8 @@ fn all_regions_take_the_ports_time_and_no_more() {
     }
 }
 
-/// Balls of 1 m radius ahead whose nearest points are 2, 13, 27 and 46 m away: objects of memories 0 to 3 for a viewer who walks past
-/// at 1 m/s (their borders are 10.87, 21.73 and 43.46 m).
+/// Balls of 1 m radius ahead, whose nearest points are 2, 13, 27 and 46 m away. For a viewer who walks past at 1 m/s,
+/// the borders of the memories are 10.87, 21.73 and 43.46 m. The balls are therefore objects of memories 0 to 3.
 fn balls() -> Scene {
     let places = [3.0, 14.0, 28.0, 47.0];
     let ball = |z: f32| Sphere { centre: Vec3::new(0.0, 0.0, -z), radius: 1.0, colour: [200, 120, 40] };
