@@ -144,7 +144,7 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
 
 /// Number of fields before the first picture that counts in the result.
 ///
-/// These fields are the start-up, the field in which the host's first view is sent, and the field in which this view is
+/// These fields are the warm-up, the field in which the host's first view is sent, and the field in which this view is
 /// drawn.
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);

@@ -44,7 +44,7 @@ pub(crate) struct LimitArgs {
     #[arg(long)]
     display: Option<String>,
     /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model
-    /// file that is thinned out evenly. Default: full-screen for pipelines that send all triangles to every region,
+    /// file that is decimated evenly. Default: full-screen for pipelines that send all triangles to every region,
     /// typical for all others.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
@@ -128,7 +128,7 @@ impl LimitArgs {
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
-        // Any other scene name is a model that is thinned out to every size.
+        // Any other scene name is a model that is decimated to every size.
         let model = if self.scene.is_some() && self.test_scene().is_none() {
             Some(Model::load(plan.scene.clone())?)
         } else {

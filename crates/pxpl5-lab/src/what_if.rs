@@ -66,8 +66,8 @@ impl Knob {
 
 /// Returns the effect of 10 % more of each resource.
 ///
-/// If the head is not tracked and the pipeline has an analytic model (closed form), this model gives the effects.
-/// Otherwise the experiment runs again for each resource, without pixels.
+/// If the head is not tracked and the pipeline has a closed form, the closed form gives the effects. Otherwise the
+/// experiment runs again for each resource, without pixels.
 ///
 /// # Errors
 ///

@@ -241,7 +241,7 @@ impl Results {
         Self { summary: summary(&outcome), run: Some((outcome, report)) }
     }
 
-    /// Returns the results of an analytic model, without a simulated run.
+    /// Returns the results of a closed form, without a simulated run.
     #[must_use]
     pub const fn of_closed_form(summary: Summary) -> Self {
         Self { summary, run: None }

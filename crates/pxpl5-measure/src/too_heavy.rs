@@ -14,9 +14,9 @@ pub struct TooHeavy {
     pub not_shown: u64,
     /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// Number of the scene's first primitives that the pipeline would show in time, computed by its analytic model.
+    /// Number of the scene's first primitives that the pipeline would show in time, computed by its closed form.
     ///
-    /// `None` if the pipeline has no analytic model, or if the model predicts that the whole scene is in time.
+    /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
     /// Advice to the user: a number of triangles to try, or a command that finds one.
     pub advice: String,

@@ -145,7 +145,7 @@ impl Head {
     pub fn evaluated_at(self, metres: f64) -> Result<Self, HeadError> {
         let (low, high) = JUDGED_AT_M;
         if !(low..=high).contains(&metres) {
-            let what = "distance at which errors are judged, m";
+            let what = "distance at which errors are evaluated, m";
             return Err(HeadError::OutOfRange { what, found: metres, low, high });
         }
         Ok(Self { judge_at_m: Some(metres), ..self })

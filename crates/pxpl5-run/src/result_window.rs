@@ -1,10 +1,10 @@
 //! The result window: the display periods over which latencies, pictures due, errors and rates are computed.
 //!
-//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
-//! were begun. The window begins after start-up, with the periods of the next picture that is due.
+//! The warm-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
+//! were begun. The window begins after the warm-up, with the periods of the next picture that is due.
 //!
 //! If a due picture in the first half of the run was not shown, the window begins with the first such picture. So no
-//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of start-up
+//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of the warm-up
 //! never have a latency or an error.
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
@@ -30,13 +30,13 @@ pub struct ResultWindow {
     pub first_period: PeriodNumber,
     /// Last period of the window, inclusive.
     pub last_period: PeriodNumber,
-    /// Period of the first picture after start-up. `None` if the run shows no picture after start-up.
+    /// Period of the first picture after the warm-up. `None` if the run shows no picture after the warm-up.
     #[serde(skip)]
     steady_from: Option<PeriodNumber>,
 }
 
 impl ResultWindow {
-    /// Returns the window of a run that has ended. Returns `None` if no period remains after start-up, or if the
+    /// Returns the window of a run that has ended. Returns `None` if no period remains after the warm-up, or if the
     /// remaining periods are too few for a due picture.
     ///
     /// `reached` is the first period that was not simulated to its end. `every` is the number of periods from one due
@@ -63,10 +63,10 @@ impl ResultWindow {
     /// window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
-        // Start-up may take at most the first half of the requested run.
+        // The warm-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
         let start = ends.first_from(0).unwrap_or_default().min(middle);
-        // If start-up takes more than half of the run, due pictures are counted from the first picture on.
+        // If the warm-up takes more than half of the run, due pictures are counted from the first picture on.
         let steady = steady_from.map(|period| period.0).filter(|period| *period < middle).unwrap_or(start);
         let first = every.map_or(steady.max(WARM_UP_PERIODS), |every| {
             let every = every.max(1);
@@ -93,7 +93,7 @@ impl ResultWindow {
         (self.first_period..=self.last_period).contains(&period)
     }
 
-    /// Returns true if a picture that is first shown in `period` lies in the window and after start-up.
+    /// Returns true if a picture that is first shown in `period` lies in the window and after the warm-up.
     #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
@@ -132,7 +132,7 @@ mod tests {
         let from = |period| Some(PeriodNumber(period));
         assert_eq!(window(9, 99).not_before(from(20), Some(3)), Some(window(21, 99)), "9 + 4 x 3");
         assert_eq!(window(9, 99).not_before(from(20), None), Some(window(20, 99)));
-        assert_eq!(window(30, 99).not_before(from(20), Some(3)), Some(window(30, 99)), "start-up took longer");
+        assert_eq!(window(30, 99).not_before(from(20), Some(3)), Some(window(30, 99)), "the warm-up took longer");
         assert_eq!(window(9, 99).not_before(from(100), Some(1)), None);
         assert_eq!(window(9, 99).not_before(None, Some(3)), Some(window(9, 99)));
     }

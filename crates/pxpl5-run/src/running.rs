@@ -24,7 +24,7 @@ impl Experiment {
     /// # Errors
     ///
     /// Like [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far if the run ends early.
-    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of start-up were shown.
+    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of the warm-up were shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }

@@ -342,7 +342,7 @@ fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
 }
 
-/// Estimates the number of fields until a picture after start-up is shown.
+/// Estimates the number of fields until a picture after the warm-up is shown.
 ///
 /// The estimate assumes that pictures keep their mean interval. For a single picture, the interval is the time until
 /// this picture was shown.

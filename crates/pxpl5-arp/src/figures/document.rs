@@ -56,7 +56,7 @@ fn pictures(text: &mut String) {
          ![Tears](pictures/arp-tears.png)\n\nThe scene is cut and not warped, and the memories are cleared to white. Gaps appear between pieces that were drawn\n\
          from different positions.\n\n\
          ![Warped](pictures/arp-warped.png)\n\nThis picture shows the same frame with warping.\n\n\
-         ![Errors](pictures/arp-error.png)\n\nThe picture shows the pixel offset of each pixel. The offset arises because the memory was drawn from another position.\n\
+         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel. The error arises because the memory was drawn from another position.\n\
          The scale ends at two pixels.\n",
     );
 }

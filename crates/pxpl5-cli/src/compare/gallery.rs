@@ -84,7 +84,7 @@ fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
         caption.push_str(&format!(": {:.1} ms from head to light", row.head_to_light_ms.mean));
     }
     if let Some(error) = row.by_field.last() {
-        caption.push_str(&format!(", pixel offset {:.2} px in the last field", error.mean_px));
+        caption.push_str(&format!(", pixel error {:.2} px in the last field", error.mean_px));
     }
     caption
 }

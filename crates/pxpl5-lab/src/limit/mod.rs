@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
-    /// Registry that contains the pipeline's analytic model.
+    /// Registry that contains the pipeline's closed form.
     pub registry: Arc<Registry>,
     /// Machine on which the pipeline runs.
     pub config: MachineConfig,
@@ -45,7 +45,7 @@ pub struct LimitQuery {
     pub level: Level,
 }
 
-/// A model that is thinned out evenly to each number of triangles. The search stops at the model's own number.
+/// A model that is decimated evenly to each number of triangles. The search stops at the model's own number.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Settings of the model's scene. The number of triangles in these settings is ignored.

@@ -289,7 +289,7 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     score.filter(|score| score.is_finite()).unwrap_or(f64::MIN)
 }
 
-/// Utilisation above which a board counts as always busy, and so limits the machine. Assumed: start-up and retraces
+/// Utilisation above which a board counts as always busy, and so limits the machine. Assumed: the warm-up and retraces
 /// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
