@@ -43,7 +43,7 @@ impl Scan {
     ///
     /// # Errors
     ///
-    /// Same as [`ScanTiming::check`] and [`ArpTiming::check`].
+    /// Fails in the same cases as [`ScanTiming::check`] and [`ArpTiming::check`].
     pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
         arp.check()?;
         timing.check()?;

@@ -93,7 +93,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Brings the scoreboard up to date after remembered runs, which change only the number of its state.
+    /// Writes the state of the last remembered run into the scoreboard. Remembered runs themselves change only the
+    /// number of this state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {

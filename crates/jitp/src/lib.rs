@@ -1,5 +1,5 @@
-//! Just-in-time pixels: every strip of lines is drawn for the time at which the beam scans it. Also frameless
-//! rendering.
+//! Just-in-time pixels and frameless rendering. With just-in-time pixels, every strip of lines is drawn for the time at
+//! which the beam scans the strip.
 //!
 //! ```text
 //!   host:     report ...... report ......                      as the tracker delivers them

@@ -52,7 +52,7 @@ impl CubeTransform<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or if its data do not fit.
+    /// Returns [`ProcessorFault`] if the code does not end, or if its data do not fit.
     pub fn run_code(
         &self,
         timing: &GpTiming,

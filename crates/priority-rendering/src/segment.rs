@@ -41,8 +41,8 @@ impl Segmentation {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. Also if an index has
-    /// no vertex, or if there could be more than ten million pieces.
+    /// Returns [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. The same
+    /// error is returned if an index has no vertex, or if there could be more than ten million pieces.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, PriorityError> {
         check(vertices, triangles, side_m)?;
         let mut cutter = Cutter { side_m, vertices: vertices.to_vec(), cuts: Vec::new(), made: BTreeMap::new() };

@@ -73,11 +73,11 @@ impl Clumps {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] if the scene has no primitives.
+    /// Returns [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never, because an experiment has a valid head-mounted display.
+    /// Never panics, because an experiment has a valid head-mounted display.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,

@@ -39,8 +39,8 @@ pub struct Report {
     /// Widths of the tears where different memories meet, in texels (90 degrees divided by the texels of a face's
     /// edge). Null if no memories meet.
     pub tears_px: TearsReport,
-    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. Excludes tracker
-    /// and host.
+    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
+    /// not include tracker and host.
     pub rotation_latency_ms: Latency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///

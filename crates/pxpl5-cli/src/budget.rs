@@ -31,8 +31,8 @@ const MOST_MEGABYTES: u64 = 16_000;
 /// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which an early run is compared with its limits. Later this happens whenever the
-/// run reports progress.
+/// Numbers of simulated fields after which an early run is compared with its limits. After the last of these fields,
+/// each report of progress is compared.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because

@@ -27,7 +27,7 @@ pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     Ok(scene)
 }
 
-/// Prints warnings about parts of a scene's file that the reader changed.
+/// Prints warnings about parts of a scene's file that the importer has changed.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);

@@ -46,7 +46,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if i860 code does not return.
+    /// Returns [`Fault::Processor`] if i860 code does not return.
     pub async fn answer(
         &self,
         received: &Received,

@@ -72,8 +72,8 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`] if the
-    /// code does not return.
+    /// Returns [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`]
+    /// if the code does not return.
     pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
         let (kind, length, words) = match body {
             Body::Words(words) => (0, words.len() as u32, &words[..]),
@@ -96,7 +96,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
+    /// Returns [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
         // The address of the words is 0, because their content does not travel through this memory.
         let request = |(message, hold): (&Message, bool)| {

@@ -108,7 +108,7 @@ impl Controller {
     /// Returns the bits of pixel memory that an operand means in the selected context.
     ///
     /// # Errors
-    /// [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
+    /// Returns [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
     pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
         let bits = FieldBits {

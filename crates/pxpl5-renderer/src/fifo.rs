@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word for which the first command makes room in the FIFO when the command starts. Words are
-    /// counted from 0 since the start of the run.
+    /// Index of the first word that fits into the FIFO when the first of these commands starts. Words are counted from
+    /// 0 since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -55,7 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index of the last of these commands whose start frees room for `word` or for an earlier word.
+    /// Returns the index of the command whose start frees the room for `word`. If `word` lies beyond the room of all
+    /// these commands, returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {

@@ -148,7 +148,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a scene that cannot be cut into segments.
+    /// Returns [`ConfigError`] for a scene that cannot be cut into segments.
     fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
         Ok(None)
     }
@@ -165,7 +165,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the pipeline cannot run on the machine.
+    /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
     /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The pictures

@@ -153,7 +153,7 @@ impl Stepper {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::run`].
+    /// Fails in the same cases as [`Experiment::run`].
     pub fn finish(mut self) -> Result<Outcome, ExperimentError> {
         self.break_at(BTreeSet::new());
         while self.failure().is_none() && self.now < self.end() {

@@ -136,7 +136,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
+    /// Returns [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
         let wrong = |found: String| VolumeError::Missing {
             what: "latency",
@@ -178,7 +178,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, VolumeError> {
         let view = self.view()?;
@@ -263,7 +263,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
+    /// Returns [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
     pub fn picture(
         &self,
         time_ps: u64,

@@ -49,7 +49,7 @@ impl LinearLanes {
     /// Returns the expression of triangle `i`.
     ///
     /// # Panics
-    /// If `i` is not below [`LANES`].
+    /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize) -> Linear {

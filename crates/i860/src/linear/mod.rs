@@ -70,8 +70,8 @@ pub struct LinearError {
     pub reason: String,
 }
 
-/// The number of operations in a stretch of linear code, for each half of a pair. Also the length of its schedule in
-/// clocks, without freezes.
+/// The number of operations in a stretch of linear code, for each half of a pair, and the length of the schedule in
+/// clocks (without freezes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
@@ -109,7 +109,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
 /// Replaces every stretch of linear code in a source by instruction pairs. Other lines stay unchanged.
 ///
 /// # Errors
-/// [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
+/// Returns [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
 pub fn schedule(source: &str) -> Result<String, LinearError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(

@@ -94,7 +94,7 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] if a scene or a number is invalid. The built-in ones are valid.
+    /// Returns [`ExperimentError`] if a scene or a number is invalid. The built-in ones are valid.
     pub fn run() -> Result<Self, ExperimentError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;

@@ -169,7 +169,7 @@ impl Tried {
     ///
     /// # Errors
     ///
-    /// Same as [`policy_rates_hz`].
+    /// Fails in the same cases as [`policy_rates_hz`].
     pub fn of(rules: Rules, situation: Situation) -> Result<Self, ExperimentError> {
         let trial = |cell_m| Ok(Trial { cell_m, rates_hz: situation.rates(&rules, cell_m)? });
         // First pass with coarse steps.
@@ -207,7 +207,7 @@ impl Interpretations {
     ///
     /// # Errors
     ///
-    /// Same as [`policy_rates_hz`].
+    /// Fails in the same cases as [`policy_rates_hz`].
     pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;

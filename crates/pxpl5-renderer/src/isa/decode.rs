@@ -74,7 +74,7 @@ impl ArrayInstruction {
     /// Decodes all instructions of a list.
     ///
     /// # Errors
-    /// [`DecodeError`] for the first invalid instruction.
+    /// Returns [`DecodeError`] for the first invalid instruction.
     pub fn decode_all(words: &[Word]) -> Result<Vec<Self>, DecodeError> {
         let mut out = Vec::new();
         let mut position = 0;

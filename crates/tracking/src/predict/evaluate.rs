@@ -36,7 +36,7 @@ impl PredictionError {
 ///
 /// # Errors
 ///
-/// [`SettingError`] if a setting of `config` is out of range.
+/// Returns [`SettingError`] if a setting of `config` is out of range.
 pub fn prediction_errors<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,

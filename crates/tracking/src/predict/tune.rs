@@ -82,7 +82,7 @@ pub fn training_seed(judged: u64) -> u64 {
 ///
 /// # Errors
 ///
-/// [`SettingError`] for `base` out of range.
+/// Returns [`SettingError`] for `base` out of range.
 pub fn tune<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,
