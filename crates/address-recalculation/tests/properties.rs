@@ -223,7 +223,7 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
         let mut winners = vec![Some(0); 640];
         let lookup = Lookup::new(&config, &table, empty.iter().collect(), None);
         lookup.winners(640 * 7, &Orientation::IDENTITY.words(16), &mut winners);
-        assert!(winners.iter().all(Option::is_none), "nobody wins an empty texel");
+        assert!(winners.iter().all(Option::is_none), "an empty texel has no winner");
     }
 }
 

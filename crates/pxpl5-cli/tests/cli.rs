@@ -498,7 +498,7 @@ fn a_checkpoint_of_a_changed_model_file_is_refused() {
     folder.file("m.ply", ply("0 0 1", "2", 1));
     let output = folder.run(&["run", "--restore", "s.json"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(err(&output).contains("s.json: the run is not the one that was saved"), "{}", err(&output));
+    assert!(err(&output).contains("s.json: the repeated run differs from the saved run"), "{}", err(&output));
 }
 
 /// Returns the names and texts of the repository's experiment files.

@@ -333,7 +333,7 @@ fn a_folder_in_use_is_told_from_what_cannot_succeed_later() {
     let folder = folder("busy");
     fs::create_dir(folder.0.join("a")).expect("ours");
     let lock = fs::File::create(folder.0.join("a/.lock")).expect("ours");
-    lock.lock().expect("nobody else has it");
+    lock.lock().expect("no other thread holds it");
     let refused = sweep(&folder, &["--out", "a", "--resume"]);
     assert_eq!(refused.status.code(), Some(75));
     assert!(err(&refused).contains("another process is writing here"), "{}", err(&refused));

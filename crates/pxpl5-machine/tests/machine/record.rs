@@ -171,5 +171,5 @@ fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
     assert!(traffic.fifo_changes.iter().any(|(_, time, words)| (*time, *words) == (end, 9)));
     let busy: Vec<u32> = traffic.busy_channels.iter().map(|(_, busy)| *busy).collect();
     assert!(busy.iter().all(|busy| *busy <= 1) && busy.contains(&1), "one message at a time: {busy:?}");
-    assert!(machine().into_record().observation().traffic.is_none(), "nobody asked");
+    assert!(machine().into_record().observation().traffic.is_none(), "it was not requested");
 }
