@@ -82,7 +82,8 @@ impl Counts {
 
     fn idioms(&mut self, text: &str, path: &str, places: &mut Vec<String>) {
         // Compare whole words, so that "in parts of" is not found in "contain parts of".
-        let words: String = text.to_lowercase().chars().map(|c| if c.is_alphabetic() { c } else { ' ' }).collect();
+        let words: String =
+            text.to_lowercase().chars().map(|c| if c.is_alphabetic() || c == '_' { c } else { ' ' }).collect();
         let words = format!(" {} ", words.split_whitespace().collect::<Vec<_>>().join(" "));
         for idiom in IDIOMS.iter().filter(|idiom| words.contains(&format!(" {idiom} "))) {
             self.idioms += 1;
