@@ -1,8 +1,8 @@
 //! Benchmarks of whole machines in host time, without pixels and with all pixels.
 //!
-//! Goals: Slats with 140 triangles 3,000 fields/s without pixels and 600 with all; Rendering Control with the scene
-//! `head` 10 ms a stereo pair without pixels and 20 with all; an idle machine 100,000 fields/s; Slats at the cycle
-//! level 3 fields/s.
+//! Goals: Slats with 140 triangles runs 3,000 fields/s without pixels and 600 fields/s with all pixels. Rendering
+//! Control with the scene `head` takes 10 ms per stereo pair without pixels and 20 ms with all pixels. An idle machine
+//! runs 100,000 fields/s. Slats at the cycle level runs 3 fields/s.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 

@@ -1,8 +1,9 @@
 //! Compares pipelines behind devices that move pictures to the newest pose, on displays of 1994 and of today.
 //!
-//! `cargo run --release --example reprojection [FOLDER] [RECORDING]` runs every pipeline under each motion of a head with
-//! the optical tracker and a Kalman filter, in a gallery. A recording of a head is one more motion. The evaluation is that
-//! of `compare`. The figure pictures/reprojection.svg and the tables of reprojection.md are written into docs/ by default.
+//! `cargo run --release --example reprojection [FOLDER] [RECORDING]` runs every pipeline in a gallery, under each
+//! motion of a head. The tracker is the optical one, with a Kalman filter. A recording of a head is one more motion.
+//! The evaluation is that of `compare`. The figure pictures/reprojection.svg and the tables of reprojection.md are
+//! written into docs/ by default.
 
 use pxpl5::{
     Budget, Every, ExperimentFile, EyeReport, Outcome, PixelErrors, Pixels, Reprojection, Showing, Statistics, Warp,

@@ -1,5 +1,5 @@
-//! Tests of variants beyond the measured prototypes: Slats with a backup field, with several graphics processors and
-//! with more renderers, which the papers name as future work. Rendering Control is tested on the larger machines.
+//! Tests of variants that the papers name as future work: Slats with a backup field, with several graphics processors
+//! and with more renderers. Rendering Control is tested on the larger machines.
 
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;

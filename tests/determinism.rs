@@ -55,8 +55,8 @@ fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
     }
 }
 
-/// Returns the whole report without values that depend on the host or on the order of ties: the seconds of the run, and
-/// the number of events that were scheduled in vain.
+/// Returns the whole report without values that depend on the host or on the order of ties. These are the seconds of
+/// the run, and the number of events without effect.
 fn report(experiment: &Experiment) -> serde_json::Value {
     let mut report = serde_json::to_value(experiment.run().expect("it runs").report()).expect("it is data");
     let fields = report.as_object_mut().expect("an object");

@@ -101,7 +101,7 @@ fn the_sweep_has_a_line_for_each_point_and_more_processors_are_faster() {
 }
 
 #[test]
-fn the_recording_is_judged_under_every_pipeline_and_predictor() {
+fn the_recording_is_evaluated_under_every_pipeline_and_predictor() {
     let printed = printed("my_recording");
     let errors: Vec<f64> = printed.lines().map(|line| number_before(line, " px of error")).collect();
     assert_eq!(errors.len(), 3 * 2);

@@ -14,8 +14,8 @@ fn report(settings: &[&str]) -> Report {
     plan.experiment(scene).run().unwrap_or_else(|error| panic!("{error}")).report()
 }
 
-/// A turn by the same angle moves the middle of the picture by focal length x tangent, and the focal length is half the width over the
-/// tangent of half the field of view: tan 45 / tan 30 = 1.732.
+/// A turn by an angle moves the middle of the picture by the focal length times the tangent of the angle. The focal
+/// length is half the width divided by the tangent of half the field of view. The ratio is tan 45 / tan 30 = 1.732.
 #[test]
 fn the_error_in_the_middle_goes_with_the_focal_length() {
     let centre = |settings: &[&str]| {

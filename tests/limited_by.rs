@@ -1,4 +1,4 @@
-//! What limits a machine: the chain of waits that ends with a picture, and how busy each kind of board is.
+//! The limiting resource of a machine: the chain of waits that ends with a picture, and how busy each kind of board is.
 
 use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Report, Resource, scene};
 

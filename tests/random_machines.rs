@@ -188,7 +188,7 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
 
 /// Checks all promises about a machine during a run.
 #[test]
-fn a_ring_is_a_ring_and_every_region_arrives_on_machines_that_nobody_built() {
+fn the_rules_of_the_ring_hold_and_every_region_arrives_on_random_machines() {
     let (mut ran, mut swapped) = (0, 0);
     each_case(60, SHORT, |experiment, told| {
         let (outcome, error) = outcome(experiment, told);
@@ -206,7 +206,7 @@ fn a_ring_is_a_ring_and_every_region_arrives_on_machines_that_nobody_built() {
 }
 
 #[test]
-fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nobody_built() {
+fn no_number_of_a_report_depends_on_ties_optimizations_or_threads_on_random_machines() {
     each_case(10, SHORT, |experiment, told| {
         let expected = report(experiment, told);
         for seed in 1..4 {
@@ -220,7 +220,7 @@ fn no_number_of_a_report_depends_on_ties_savings_or_threads_on_machines_that_nob
 }
 
 #[test]
-fn no_pixel_depends_on_threads_on_machines_that_nobody_built() {
+fn no_pixel_depends_on_threads_on_random_machines() {
     each_case(6, SHORT, |experiment, told| {
         let (lazy, _) = outcome(&experiment.clone().pixels(Pixels::Lazy), told);
         for threads in [0, 1, 3] {

@@ -89,7 +89,7 @@ fn code_that_repeats_takes_the_clocks_that_are_counted() {
 }
 
 #[test]
-fn nobody_looking_changes_no_time() {
+fn computing_pixels_changes_no_time() {
     for experiment in experiments() {
         let [off, all] = [Pixels::Off, Pixels::All].map(|pixels| after(&experiment.clone().pixels(pixels), 10));
         assert_eq!(off.record().trace_hash(), all.record().trace_hash());
@@ -98,7 +98,7 @@ fn nobody_looking_changes_no_time() {
 
 /// All optimizations are disabled at once, also with code on the graphics processors.
 #[test]
-fn savings_do_not_meet() {
+fn optimizations_do_not_affect_each_other() {
     let [_, slats, _] = experiments();
     let slats = slats.level(Level::Cycle).pixels(Pixels::All);
     let without = Optimization::ALL.into_iter().fold(slats.clone(), Experiment::without);
@@ -107,7 +107,7 @@ fn savings_do_not_meet() {
 
 /// Checks the tests themselves: a disabled optimization increases the number of events.
 #[test]
-fn a_saving_that_is_given_up_is_paid_for_in_events() {
+fn a_disabled_optimization_costs_more_events() {
     let [_, slats, _] = experiments();
     let slats = slats.pixels(Pixels::Off);
     let with = after(&slats, 3).events();
@@ -116,7 +116,7 @@ fn a_saving_that_is_given_up_is_paid_for_in_events() {
 }
 
 #[test]
-fn savings_are_known_by_their_names() {
+fn optimizations_are_found_by_their_names() {
     for saving in Optimization::ALL {
         assert_eq!(saving.name().parse(), Ok(saving));
     }

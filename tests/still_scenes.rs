@@ -181,17 +181,17 @@ fn all_sizes(of: impl Fn(&PipelineEntry) -> bool) {
 }
 
 #[test]
-fn rendering_control_shows_what_the_oracle_draws() {
+fn rendering_control_shows_the_ideal_picture() {
     all_sizes(|entry| entry.family == "rendering-control");
 }
 
 #[test]
-fn slats_and_frameless_rendering_show_what_the_oracle_draws() {
+fn slats_and_frameless_rendering_show_the_ideal_picture() {
     all_sizes(|entry| ["slats", "frameless"].contains(&entry.family));
 }
 
 #[test]
-fn just_in_time_pixels_show_what_the_oracle_draws() {
+fn just_in_time_pixels_show_the_ideal_picture() {
     all_sizes(|entry| entry.family == "jitp");
 }
 

@@ -263,7 +263,7 @@ fn looks(rounds: usize) -> Fallible<Vec<Row>> {
         rounds,
         vec![
             Way::new("off", || looking(&off, FIELDS, None)),
-            Way::new("nobody", || looking(&lazy, FIELDS, None)),
+            Way::new("no reader", || looking(&lazy, FIELDS, None)),
             Way::new("one of 120", || looking(&lazy, FIELDS, Some(120))),
             Way::new("one of 60", || looking(&lazy, FIELDS, Some(60))),
         ],

@@ -37,7 +37,7 @@ impl PixelWorker for NotingWorker {
         let begin = ThreadTime::now();
         let _ = region.pixels();
         let piece = (simulating, begin.elapsed().as_secs_f64());
-        self.pieces.lock().expect("nobody panics with it").push(piece);
+        self.pieces.lock().expect("no worker panics with it").push(piece);
         self.since = ThreadTime::now();
         self.regions += 1;
     }

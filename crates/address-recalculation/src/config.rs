@@ -71,7 +71,7 @@ impl ArpConfig {
     ///
     /// # Errors
     ///
-    /// Same as [`ArpConfig::check`].
+    /// Fails in the same cases as [`ArpConfig::check`].
     pub fn table(&self) -> Result<LensTable, ArpError> {
         self.check()?;
         LensTable::new(&self.lens, &self.picture(), self.timing.vector_bits)
@@ -83,7 +83,7 @@ impl ArpConfig {
     ///
     /// # Errors
     ///
-    /// Same as [`ArpConfig::check`].
+    /// Fails in the same cases as [`ArpConfig::check`].
     pub fn footprint(&self, x: u32, y: u32, orientation: &Orientation) -> Result<Option<Footprint>, ArpError> {
         self.check()?;
         let picture = self.picture();
@@ -99,7 +99,7 @@ impl ArpConfig {
     ///
     /// # Errors
     ///
-    /// Same as [`ArpConfig::check`].
+    /// Fails in the same cases as [`ArpConfig::check`].
     pub fn scan(&self) -> Result<Scan, ArpError> {
         Scan::new(self.scan, &self.timing)
     }

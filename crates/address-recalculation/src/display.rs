@@ -78,8 +78,8 @@ impl AddressRecalculationPipeline {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Orientation`] if the matrix is not a rotation. The refusal is counted, and the previous matrix stays
-    /// valid.
+    /// Returns [`ArpError::Orientation`] if the matrix is not a rotation. The refusal is counted, and the previous
+    /// matrix stays valid.
     pub fn load_orientation(&mut self, eye: Eye, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         self.eyes.get_mut(eye.index()).map_or(Ok(()), |boards| boards.latch.load(rows, now))
     }

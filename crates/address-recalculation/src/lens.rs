@@ -238,7 +238,7 @@ impl LensTable {
     ///
     /// # Errors
     ///
-    /// Same as [`Lens::check`].
+    /// Fails in the same cases as [`Lens::check`].
     pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
         lens.check(picture)?;
         Ok(Self::of_checked(lens, picture, vector_bits))

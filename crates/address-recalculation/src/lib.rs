@@ -73,8 +73,8 @@
 //!
 //! # Sources
 //!
-//! RP93 = Regan and Pose, VRAIS 93; RP94 = Regan and Pose, SIGGRAPH 94; RPM = Regan and Pose, *Display Memory Access
-//! Issues*; CPR05 = Chow, Pose and Regan, ACSC 2005. Word lengths, stages, face sizes and lenses are not printed and
+//! RP93 = Regan and Pose, VRAIS 93. RP94 = Regan and Pose, SIGGRAPH 94. RPM = Regan and Pose, *Display Memory Access
+//! Issues*. CPR05 = Chow, Pose and Regan, ACSC 2005. Word lengths, stages, face sizes and lenses are not printed and
 //! are assumed here.
 
 mod address;

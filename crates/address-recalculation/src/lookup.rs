@@ -173,7 +173,7 @@ impl<'a> Lookup<'a> {
     ///
     /// # Panics
     ///
-    /// Same as [`Lookup::run`].
+    /// Panics in the same cases as [`Lookup::run`].
     pub fn winners(&self, first: usize, matrix: &MatrixWords, out: &mut [Option<u8>]) {
         let vectors = self.addressing.table.run(first, out.len());
         for (i, winner) in out.iter_mut().enumerate() {

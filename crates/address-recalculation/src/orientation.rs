@@ -23,7 +23,7 @@ impl Orientation {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Orientation`] if the matrix is not finite, or deviates from a rotation by more than 1e-3.
+    /// Returns [`ArpError::Orientation`] if the matrix is not finite, or deviates from a rotation by more than 1e-3.
     pub fn new(rows: [Vector; 3]) -> Result<Self, ArpError> {
         let refused = |what: String| Err(ArpError::Orientation(what));
         if let Some(component) = rows.iter().flatten().find(|component| !component.is_finite()) {
@@ -47,7 +47,7 @@ impl Orientation {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Orientation`] if the quaternion is not finite or has length zero.
+    /// Returns [`ArpError::Orientation`] if the quaternion is not finite or has length zero.
     pub fn from_quaternion(quaternion: [f64; 4]) -> Result<Self, ArpError> {
         let length = libm::sqrt(quaternion.iter().map(|component| component * component).sum());
         let [x, y, z, w] = quaternion.map(|component| component / length);
@@ -126,7 +126,8 @@ impl OrientationLatch {
     ///
     /// # Errors
     ///
-    /// Same as [`Orientation::new`]. A refused matrix is counted and does not replace the previous one.
+    /// Fails in the same cases as [`Orientation::new`]. A refused matrix is counted and does not replace the previous
+    /// one.
     pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         match Orientation::new(rows) {
             Ok(orientation) => {

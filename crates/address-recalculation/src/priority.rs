@@ -1,4 +1,4 @@
-//! Priority rendering: policies that decide when parts of the scene must be drawn again. Also warping, which makes
+//! Priority rendering: policies that decide when parts of the scene must be drawn again, and warping. Warping makes
 //! parts of different age meet without gaps.
 //!
 //! ```text
@@ -12,9 +12,9 @@
 //! # Behaviour
 //!
 //! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than a given
-//!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), the
-//!   object is animated, or the object rotates. A rotation of the head never makes an image wrong. A face that is out
-//!   of sight need not be drawn at once ([`time_until_visible_s`]).
+//!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), is
+//!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight need not be
+//!   drawn at once ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
 //!   every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
 //!   together.
@@ -22,9 +22,9 @@
 //!   cell determines the cell's memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further
 //!   memory holds `ring_growth` times as many rings as the previous one.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
-//!   permitted distance grows with the distance to the memory's nearest cell. This is any cell that the memory could
-//!   hold, or only a cell with content (`to_held_cells`). With warping, an update of a memory makes all faster memories
-//!   due, too (cascade).
+//!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
+//!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
+//!   memory also makes all faster memories due (cascade).
 //! - **New home cell**: when the eye has left the home cell and the slowest memory is due, cells are assigned to
 //!   memories anew. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all

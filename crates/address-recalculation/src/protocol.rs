@@ -72,8 +72,8 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 pub(crate) enum ArpMessage {
     /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
-    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If it is 0, the
-    /// memory swaps alone.
+    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If `together` is 0,
+    /// the memory swaps alone.
     Swap { buffer: u8, together: u8 },
     /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),
@@ -85,6 +85,7 @@ pub(crate) enum ArpMessage {
 ///
 /// [`ArpError`] describes the expected and the found content.
 pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpError> {
+    // Swap requests have the same words for all displays.
     if let Some(buffer) = read_swap_request(words) {
         return Ok(ArpMessage::Swap { buffer: checked_buffer(buffer.into())?, together: 0 });
     }
@@ -99,6 +100,7 @@ pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpEr
         }
         [MATRIX, components @ ..] => {
             let components: [Word; 9] = components.try_into().map_err(|_| wrong("9 components", &components.len()))?;
+            // The components are single-precision numbers, row by row.
             let row = |first: usize| [0, 1, 2].map(|i| f64::from(f32::from_bits(components[first + i])));
             Ok(ArpMessage::Matrix([row(0), row(3), row(6)]))
         }

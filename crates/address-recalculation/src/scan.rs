@@ -43,7 +43,7 @@ impl Scan {
     ///
     /// # Errors
     ///
-    /// Same as [`ScanTiming::check`] and [`ArpTiming::check`].
+    /// Fails in the same cases as [`ScanTiming::check`] and [`ArpTiming::check`].
     pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
         arp.check()?;
         timing.check()?;
@@ -98,8 +98,8 @@ impl Scan {
 
     /// Returns the time at which the orientation for a pixel is read.
     ///
-    /// It precedes the display of one pixel by the duration of all stages: this pixel, or the first visible pixel of
-    /// its line or field.
+    /// This time precedes the display of a pixel by the duration of all stages. With [`Latch::Pixel`] this pixel is the
+    /// given one, otherwise the first visible pixel of the same line or field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.lights(x, y, field)?;

@@ -24,7 +24,7 @@ impl TexelFormat {
 
     /// Returns the number of ring words per texel: 1 if colour and depth fit into 32 bits, otherwise 2.
     ///
-    /// If they share a word, the colour is in its lower half.
+    /// If colour and depth share a word, the colour is in its lower half.
     #[must_use]
     pub const fn words(&self) -> u32 {
         if self.colour_bits + self.depth_bits <= 32 { 1 } else { 2 }

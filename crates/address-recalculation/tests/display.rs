@@ -35,7 +35,7 @@ fn an_update_is_shown_from_the_next_retrace_on() {
 }
 
 #[test]
-fn nothing_is_computed_before_somebody_looks_and_then_only_what_is_read() {
+fn texels_are_computed_only_when_a_picture_reads_them() {
     let mut bench = Bench::new(&CONFIG);
     let source = flat(0x33, 1);
     bench.update(0, 1, &source);

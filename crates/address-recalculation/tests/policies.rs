@@ -250,7 +250,7 @@ fn an_object_moves_when_both_memories_are_drawn() {
 
 /// From the middle of a cell of 5 m, the slowest memory begins 17.5 m away. 17.5 m x 2 sin(theta / 2) is 53.7 mm.
 #[test]
-fn cells_are_dealt_anew_when_the_home_cell_is_left_and_the_slowest_memory_is_due() {
+fn cells_are_assigned_anew_when_the_eye_leaves_the_home_cell_and_the_slowest_memory_is_due() {
     let mut cells = Cells::new(&EQUAL_RINGS, square(8), false);
     let first = cells.frame(at(12.5, 12.5));
     assert!(!first.deals_anew && first.due == [true; 4], "{first:?}");

@@ -223,14 +223,14 @@ fn of_several_memories_the_nearest_shows_and_the_lowest_on_ties() {
         let mut winners = vec![Some(0); 640];
         let lookup = Lookup::new(&config, &table, empty.iter().collect(), None);
         lookup.winners(640 * 7, &Orientation::IDENTITY.words(16), &mut winners);
-        assert!(winners.iter().all(Option::is_none), "nobody wins an empty texel");
+        assert!(winners.iter().all(Option::is_none), "an empty texel has no winner");
     }
 }
 
 /// Checks that lookups, which share a buffer in each thread, do not affect each other. Earlier faces of another size or
 /// with other contents must leave no traces.
 #[test]
-fn a_look_does_not_depend_on_the_looks_before() {
+fn a_snapshot_does_not_depend_on_earlier_snapshots() {
     let looks = [(128, 1), (256, 2), (128, 3), (128, 1), (256, 2)].map(|(face_texels, seed)| {
         move || {
             let timing = ArpTiming { face_texels, display_memories: 1, ..ArpTiming::PAPERS };

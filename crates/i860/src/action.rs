@@ -106,7 +106,7 @@ pub(crate) struct FloatingAction {
 }
 
 /// The kinds of effect that a floating-point instruction can have. Kinds that read singles come first, then kinds that
-/// read doubles. The specialized kinds assume that a result leaving a pipe is no source of the same instruction.
+/// read doubles. Specialized kinds apply only if no result that leaves a pipe is a source of the same instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -186,7 +186,7 @@ pub(crate) struct Action {
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction. With `second`, the core half, chooses those of a pair.
+    /// Chooses the effects of a single instruction, or of a pair if there is a core half (`second`).
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

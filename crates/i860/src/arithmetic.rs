@@ -1,8 +1,8 @@
 //! IEEE arithmetic on bit patterns: round to nearest even, the same bits on every host.
 //!
 //! Host `f32` and `f64` addition, subtraction, multiplication, division and square root are exact IEEE operations on
-//! every host. Only the bits of NaN results differ between hosts. A NaN result is therefore replaced: by the first NaN
-//! operand made quiet, or by the default NaN (sign set, as on Intel's other parts) if no operand is NaN.
+//! every host. Only the bits of NaN results differ between hosts. A NaN result is therefore replaced by the first NaN
+//! operand made quiet. If no operand is NaN, it is replaced by the default NaN (sign set, as on Intel's other parts).
 
 use crate::state::PipeStage;
 

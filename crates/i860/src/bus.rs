@@ -15,13 +15,13 @@ pub trait Bus {
     /// Reads `size` bytes (1, 2, 4 or 8) at `address`. The result is extended with zeros.
     ///
     /// # Errors
-    /// [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
+    /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
     fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped>;
 
     /// Writes the low `size` bytes (1, 2, 4 or 8) of `value` at `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
+    /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
     /// Returns true if the caches can hold the line of `address` (the KEN# pin). Must be false for addresses of
@@ -54,7 +54,7 @@ impl Ram {
     /// Copies `bytes` to memory at `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] if the bytes do not fit. Nothing is written then.
+    /// Returns [`Unmapped`] if the bytes do not fit. Nothing is written then.
     pub fn load(&mut self, address: u32, bytes: &[u8]) -> Result<(), Unmapped> {
         let at = self.offset(address, bytes.len())?;
         self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
@@ -64,7 +64,7 @@ impl Ram {
     /// Copies 32-bit words to memory at `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] if the words do not fit. Nothing is written then.
+    /// Returns [`Unmapped`] if the words do not fit. Nothing is written then.
     pub fn load_words(&mut self, address: u32, words: &[u32]) -> Result<(), Unmapped> {
         let at = self.offset(address, size_of_val(words))?;
         for (place, word) in self.bytes[at..].as_chunks_mut::<4>().0.iter_mut().zip(words) {
@@ -76,7 +76,7 @@ impl Ram {
     /// Reads `count` 32-bit words from `address`.
     ///
     /// # Errors
-    /// [`Unmapped`] if a word lies outside the memory.
+    /// Returns [`Unmapped`] if a word lies outside the memory.
     pub fn words(&self, address: u32, count: usize) -> Result<Vec<u32>, Unmapped> {
         let at = self.offset(address, count.saturating_mul(4))?;
         let words = self.bytes[at..at + count * 4].chunks_exact(4);

@@ -29,9 +29,9 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the first access that is not a cache hit. The search begins at access `from` and ends before instruction
-    /// or pair `limit`. Returns the index of the access at which the search ended. If this access is not a hit, the
-    /// index of its instruction or pair is returned too. Stores that hit mark their lines dirty.
+    /// Finds the first access that is not a cache hit, from access `from` on, before instruction or pair `limit`.
+    /// Returns the index of this access, together with the index of its instruction or pair. If there is no such
+    /// access, returns the index of the first access that was not examined. Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,

@@ -30,7 +30,8 @@ fn split16(word: u32) -> i32 {
 /// Decodes one instruction word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
 ///
 /// # Errors
-/// [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not have.
+/// Returns [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not
+/// have.
 pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     let mut i = Instruction::new(Op::Fnop);
     i.dest = field(word, 16);

@@ -230,6 +230,7 @@ fn arms(i: &Instruction) -> u16 {
 fn floating_arms(i: &Instruction) -> u16 {
     let pipelined = i.has(Flags::PIPELINED) || i.op == Op::DualOp;
     let double = i.has(Flags::SOURCE_DOUBLE);
+    // f0 and f1 cannot be written, so no later instruction waits for them.
     let mut bits = if i.dest < 2 { 0 } else { arm::FLOATING_RESULT };
     bits |= match i.op {
         Op::Frcp | Op::Frsqr => arm::SEED,
@@ -239,6 +240,7 @@ fn floating_arms(i: &Instruction) -> u16 {
         _ if !pipelined => arm::SCALAR,
         _ => 0,
     };
+    // Row 11: a double-precision multiplication delays the next multiplication, also in a dual operation.
     if double && matches!(i.op, Op::Fmul | Op::Fmul3 | Op::Fmlow | Op::DualOp) {
         bits | arm::DOUBLE_MULTIPLY
     } else {

@@ -5,8 +5,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// For each pixel size psr.PS: the mask of the bits that faddp copies into MERGE, and the number of bits by which MERGE
-/// is shifted before.
+/// For each pixel size psr.PS: the mask of the bits that faddp copies into MERGE, and the number of bits by which faddp
+/// first shifts MERGE.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 

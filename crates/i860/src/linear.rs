@@ -45,9 +45,9 @@
 //! The reserve grows for each 64 lines of distance from the first line (*slope*). No schedule thus runs out of
 //! registers.
 //!
-//! An operation without operands pushes a pipe (a *drain*) in two cases: no operation can be issued, or a value in the
-//! pipe is more urgent than the best operation by more than the *eagerness*. An operation that can be a dual operation
-//! also pushes the other pipe, if no result is lost.
+//! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
+//! In the second case, a value in the pipe is more urgent than the best operation by more than the *eagerness*. An
+//! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
 //! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes if it hits the caches.
 //! A *shake* other than 0 changes the priorities a little. Schedules of the same text then differ by some per cent. A
@@ -70,8 +70,8 @@ pub struct LinearError {
     pub reason: String,
 }
 
-/// The number of operations in a stretch of linear code, for each half of a pair. Also the length of its schedule in
-/// clocks, without freezes.
+/// The number of operations in a stretch of linear code, for each half of a pair, and the length of the schedule in
+/// clocks (without freezes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
@@ -109,7 +109,7 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
 /// Replaces every stretch of linear code in a source by instruction pairs. Other lines stay unchanged.
 ///
 /// # Errors
-/// [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
+/// Returns [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
 pub fn schedule(source: &str) -> Result<String, LinearError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(

@@ -118,8 +118,8 @@ pub(crate) struct Run(u64);
 
 impl Run {
     /// Makes the key of a run from the scoreboard before it and from its first and last position in the block. The
-    /// flags have this meaning: the branch was taken, the last instruction trapped, and the first fetch is from a cache
-    /// line that is still arriving.
+    /// flags are: the branch was taken, the last instruction trapped, the first fetch is from a cache line that is
+    /// still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;

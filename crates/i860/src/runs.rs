@@ -1,10 +1,10 @@
 //! The clocks of a basic block, counted run by run. A *run* is a part of a block whose instructions and data are all in
 //! the caches. The remembered clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
-//! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch and plus
-//! 2 after its issue. A run ends at one of three places: before an access that needs the bus, before a line that the
-//! instruction cache does not hold, or at the end of the executed code. After an access that needs the bus, the next
-//! run begins with the scoreboard after this access.
+//! A *place* is a position in a block. It is three times the index of an instruction or pair, plus 1 after its fetch
+//! and plus 2 after its issue. A run ends before an access that needs the bus, or before a line that the instruction
+//! cache does not hold. Otherwise it ends with the executed code. After an access that needs the bus, the next run
+//! begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -93,7 +93,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Brings the scoreboard up to date after remembered runs, which change only the number of its state.
+    /// Writes the state of the last remembered run into the scoreboard. Remembered runs themselves change only the
+    /// number of this state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {

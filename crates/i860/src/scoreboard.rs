@@ -376,6 +376,8 @@ impl Scoreboard {
         if d.arms & arm::DOUBLE_MULTIPLY != 0 {
             self.set_hazard(hazard::DOUBLE_MULTIPLY, Freeze::DoubleMultiply, now);
         }
+        // The result of the graphics unit is not ready for floating-point units one clock later. f0 and f1 hold no
+        // results.
         if d.arms & arm::GRAPHICS != 0 {
             self.graphics_result = float_mask(d.instruction.dest, 8) & !(3 << 32);
             self.set_hazard_until(hazard::GRAPHICS, now + 1, Freeze::GraphicsToFloating);

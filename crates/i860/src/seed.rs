@@ -6,7 +6,7 @@
 
 use crate::arithmetic::{narrow, widen};
 
-/// The choice of results that `frcp` and `frsqr` return.
+/// The table from which `frcp` and `frsqr` take their results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeedTable {

@@ -84,7 +84,7 @@ fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.d 0(r4), f8"), 13);
 }
 
-/// The list, 16, address pipe full: "until next address can issue", whoever issues it.
+/// The list, 16, address pipe full: "until next address can issue", for any instruction that issues it.
 #[test]
 fn row_16_holds_a_store_behind_three_requests() {
     let source = "pfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\nst.l r5, 0(r4)";

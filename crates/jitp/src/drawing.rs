@@ -17,7 +17,7 @@ const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 /// Largest deviation, in subpixels, between a straight line and a corner's path on the screen. Interpolation in eye
 /// space makes this path curved.
 ///
-/// A head that turns by 10 degrees in a field gives 5 pixels. This is far above the peak speed of a head.
+/// A head that turns by 10 degrees during a field gives a deviation of 5 pixels. No real head turns so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
 /// A rectangle of pixels. `across` holds its first and last column; `lines` holds its first and last line of the frame.

@@ -1,5 +1,5 @@
-//! Just-in-time pixels: every strip of lines is drawn for the time at which the beam scans it. Also frameless
-//! rendering.
+//! Just-in-time pixels and frameless rendering. With just-in-time pixels, every strip of lines is drawn for the time at
+//! which the beam scans the strip.
 //!
 //! ```text
 //!   host:     report ...... report ......                      as the tracker delivers them
@@ -11,8 +11,8 @@
 //! ```
 //!
 //! - One GP is the [`master`](fn@master): it synchronizes with the beam, stores the newest tracking data and orders the
-//!   strips. Slave k of n draws strips k, k + n, k + 2n and so on, so it has the time of n strips for each. Every slave
-//!   holds the whole display list.
+//!   strips. Slave k of n draws strips k, k + n, k + 2n and so on. It has the time of n strips for each strip. Every
+//!   slave holds the whole display list.
 //! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). Its regions are 128 pixels
 //!   wide. They use the renderers in turn. No second buffer is needed: one field is written while the other one is
 //!   scanned, or each line is written just before the beam.

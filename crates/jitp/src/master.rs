@@ -180,8 +180,8 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Two expected durations: from an order until its blocks are on the screen, and from then until other blocks replace
-/// them.
+/// Two expected durations: from an order until its blocks are visible, and from this instant until other blocks replace
+/// these blocks.
 struct Expected {
     drawing: Span,
     standing: Span,

@@ -38,8 +38,8 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Divides a region's triangles and spheres into messages, triangles first. Their number is the smallest that the
-/// maximum length of a message permits.
+/// Divides a region's triangles and spheres into messages, triangles first. There are as few messages as their maximum
+/// length permits.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
@@ -149,8 +149,8 @@ impl RegionWords {
         })
     }
 
-    /// Appends the words of a command. It cannot fail, because the machine's configuration rejects layouts that lack a
-    /// field of a command.
+    /// Appends the words of a command. The function cannot fail, because the machine's configuration rejects layouts
+    /// that lack a field of a command.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");

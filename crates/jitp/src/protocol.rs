@@ -82,7 +82,7 @@ impl DrawingOrder {
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for words that are no such message.
+    /// Returns [`Fault::Protocol`] for words that are no such message.
     pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
         let order = match &received.body {
             Body::Words(words) => Self::from_words(words),

@@ -145,7 +145,7 @@ impl PlacedStructure {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or if the board has no room for its data.
+    /// Returns [`ProcessorFault`] if the code does not end, or if the board has no room for its data.
     pub fn run_code(&self, list: &DisplayList, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let matrices = self.matrices.iter().flat_map(Mat4::to_cols_array);
         let [x, y, z] = list.towards_light.to_array();

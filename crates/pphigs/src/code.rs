@@ -138,7 +138,7 @@ impl Share {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] if the primitives do not fit.
+    /// Returns [`ProcessorFault::Unmapped`] if the primitives do not fit.
     pub fn install(&self, processor: &mut Processor) -> Result<(), ProcessorFault> {
         for (place, number) in (0..).zip(self.all_triangles()) {
             let words = display_list_words(&self.list.triangle(number));
@@ -239,7 +239,7 @@ impl Pass {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or if its data do not fit.
+    /// Returns [`ProcessorFault`] if the code does not end, or if its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
         let needs = self.needs(kernel, self.transformed());

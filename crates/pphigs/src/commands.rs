@@ -32,8 +32,8 @@ pub struct RegionEnvelope {
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the commands of a region's bin and the commands of its envelope. Their number is the
-/// smallest that the maximum length of a message permits.
+/// Returns the messages with the commands of a region's bin and the commands of its envelope. There are as few messages
+/// as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -149,8 +149,8 @@ impl Iterator for Parts {
     }
 }
 
-/// Removes primitives of `words_each` words each from the front of `remaining`, as many as fit into `room_words`, and
-/// returns them.
+/// Removes from the front of `remaining` as many primitives as fit into `room_words`, and returns them. Each primitive
+/// has `words_each` words.
 fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
     let taken = std::mem::replace(&mut remaining.start, end)..end;
@@ -192,8 +192,8 @@ impl Pass {
         envelope.shade && self.picture().shading == Shading::Phong
     }
 
-    /// Returns the number of words of the commands at the end of a region: shading and copy, as far as the envelope has
-    /// them.
+    /// Returns the number of words of the commands at the end of a region. Shading and copy count only if the envelope
+    /// contains them.
     fn ending_words(&self, envelope: RegionEnvelope) -> u32 {
         CommandKind::Shade.words() * u32::from(self.shades(envelope))
             + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())

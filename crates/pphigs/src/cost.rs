@@ -8,7 +8,7 @@ use pxpl5_sim::Span;
 
 /// Counted work of a TRANSFORM. Each count has a time per unit in the timing table.
 ///
-/// The simulation uses whole counts (`u64`). An analytic model can use mean counts (`f64`).
+/// The simulation uses whole counts (`u64`). A closed form can use mean counts (`f64`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransformCost<N = u64> {
     /// Number of started passes over a display list, at [`GpTiming::pass_ns`] each.

@@ -114,8 +114,8 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
 
 /// Returns the source of the code that divides a bin into messages.
 ///
-/// A message has at most `most` words if it lacks the end of the region, and at most `whole` words if it contains the
-/// end.
+/// `most` is the maximum number of words of a message without the end of the region. `whole` is the maximum for a
+/// message with the end of the region.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }

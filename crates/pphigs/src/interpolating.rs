@@ -44,7 +44,7 @@ impl TriangleEndsRecorder<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or has no room for the records.
+    /// Returns [`ProcessorFault`] if the code does not end, or has no room for the records.
     pub fn run_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Option<Span>, ProcessorFault> {
         let n_triangles = self.share.counts().triangles;
         let records = self.part.checked(processor, self.share, RECORD_BYTES * n_triangles)?;
@@ -107,7 +107,7 @@ impl StripInterpolation<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or has no room for the commands.
+    /// Returns [`ProcessorFault`] if the code does not end, or has no room for the commands.
     pub fn run_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Option<Span>, ProcessorFault> {
         let pass = self.share.transform(self.between, 0, self.picture);
         let Some(kernel) = pass.kernel(processor.version()) else { return Ok(None) };

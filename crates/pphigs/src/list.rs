@@ -39,14 +39,14 @@ pub struct DisplayList {
 }
 
 impl DisplayList {
-    /// Sorts each structure's vertices by their first use in its triangles, so that neighbours in use are neighbours in
-    /// memory.
+    /// Sorts each structure's vertices by their first use in its triangles. Vertices that are used together then lie
+    /// together in memory.
     ///
     /// A vertex that several structures use is duplicated. A vertex that no triangle uses is dropped.
     ///
     /// # Panics
     ///
-    /// If a structure refers to a missing triangle, or a triangle to a missing vertex.
+    /// Panics if a structure refers to a missing triangle, or a triangle to a missing vertex.
     #[must_use]
     pub fn with_vertices_in_order(mut self) -> Self {
         let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
@@ -96,7 +96,7 @@ impl DisplayList {
     ///
     /// # Panics
     ///
-    /// If there is no triangle with index `number`, or if it refers to a missing vertex.
+    /// Panics if there is no triangle with index `number`, or if it refers to a missing vertex.
     #[must_use]
     pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
@@ -111,7 +111,7 @@ impl DisplayList {
     ///
     /// # Panics
     ///
-    /// If there is no triangle with index `number`, or if it refers to a missing vertex.
+    /// Panics if there is no triangle with index `number`, or if it refers to a missing vertex.
     #[must_use]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
@@ -143,7 +143,7 @@ impl Share {
     ///
     /// # Panics
     ///
-    /// If `of` is zero, which a valid configuration excludes.
+    /// Panics if `of` is zero, which a valid configuration excludes.
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
@@ -187,7 +187,7 @@ impl Share {
     ///
     /// # Panics
     ///
-    /// If `size` is zero.
+    /// Panics if `size` is zero.
     pub fn clumps(&self, size: usize) -> impl Iterator<Item = Self> {
         let share = self.clone();
         let n_triangles = self.triangles.len();
@@ -265,7 +265,7 @@ fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
 
-/// Returns the part of a range from its element `from` to before its element `to`, cut at the end of the range.
+/// Returns the elements `from` to `to - 1` of a range, without elements beyond the end of the range.
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }

@@ -19,7 +19,7 @@ const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 ///
 /// # Errors
 ///
-/// [`ProcessorFault`] if the code does not end, or if the order is longer than a message.
+/// Returns [`ProcessorFault`] if the code does not end, or if the order is longer than a message.
 pub fn assemble_order(processor: &mut Processor, order: &[Word], head: usize) -> Result<Span, ProcessorFault> {
     let (head, views) = order.split_at(head.min(order.len()));
     if order.len() > MAX_MESSAGE_WORDS as usize || head.len() > HEAD_WORDS {

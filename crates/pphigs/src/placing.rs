@@ -19,8 +19,8 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// # Panics
 ///
-/// If the view has no eye. Also if the list's structures have changed since its first placement, but its cache
-/// [`recent`](DisplayList::recent) has not been emptied.
+/// Panics if the view has no eye. Also panics if the list's structures have changed since its first placement, but its
+/// cache [`recent`](DisplayList::recent) has not been emptied.
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);

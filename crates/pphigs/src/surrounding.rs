@@ -52,7 +52,7 @@ impl CubeTransform<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or if its data do not fit.
+    /// Returns [`ProcessorFault`] if the code does not end, or if its data do not fit.
     pub fn run_code(
         &self,
         timing: &GpTiming,
@@ -135,8 +135,8 @@ fn marks(pass: &Pass) -> [u32; 3] {
 
 /// Primitives of one structure whose views are to be found.
 ///
-/// `held` is their range of indices among the primitives that the GP holds. `first` is the address of the GP's first
-/// primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
+/// `held` is the range of these primitives' indices among all primitives that the GP holds. `first` is the address of
+/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
 struct ViewSort {
     held: Range<usize>,
     first: u32,

@@ -73,7 +73,7 @@ impl FrameView {
     ///
     /// # Errors
     ///
-    /// [`ViewWordsError`] if the number of words does not match the header.
+    /// Returns [`ViewWordsError`] if the number of words does not match the header.
     pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
         let n_eyes = header_word(words, 2);
         let n_edits = header_word(words, 3);

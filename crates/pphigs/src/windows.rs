@@ -131,7 +131,7 @@ impl Pass {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or its data do not fit.
+    /// Returns [`ProcessorFault`] if the code does not end, or its data do not fit.
     pub fn keep(
         &self,
         timing: &GpTiming,
@@ -240,7 +240,7 @@ impl WindowSearchWork<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not end, or has no room for the result.
+    /// Returns [`ProcessorFault`] if the code does not end, or has no room for the result.
     pub fn run_code(&self, processor: &mut Processor) -> Result<Option<SearchOutput>, ProcessorFault> {
         let Some(kept) = Kept::noted(processor, self.part)? else { return Ok(None) };
         self.check_room(processor)?;

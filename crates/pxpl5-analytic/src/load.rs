@@ -52,11 +52,11 @@ impl Load {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] if the scene has no primitives.
+    /// Returns [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never, because an experiment has a valid head-mounted display.
+    /// Never panics, because an experiment has a valid head-mounted display.
     pub fn of_views(
         experiment: &Experiment,
         viewport: Viewport,

@@ -86,8 +86,9 @@ impl SlatsModel {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if there are too few renderers, or if messages to renderers leave fewer than two channels for
-    /// split copies. Such copies would wait for each other, and the analytic level does not model this wait.
+    /// Returns [`ConfigError`] if there are too few renderers, or if messages to renderers leave fewer than two
+    /// channels for split copies. Such copies would wait for each other, and the analytic level does not model this
+    /// wait.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
         // Each renderer holds as many regions as its memory layout permits.
         let contexts = usize::from(program.layout().plan().contexts.max(1));

@@ -144,8 +144,8 @@ pub(super) struct Commands<const N: usize> {
     drawing: Times<N>,
     /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.
     ///
-    /// There is room when a certain command has started: the one with the word that is one FIFO depth before the last
-    /// word. The value is `f64::MIN` if that command belongs to the previous message.
+    /// The FIFO has room when a certain command has started. This command contains the word that is one FIFO depth
+    /// before the last word. The value is `f64::MIN` if that command belongs to the previous message.
     room_after: Times<N>,
     /// Position of the command that must have started before the FIFO has room for the last word. It is counted back
     /// from the end of the previous message. Infinite if that command belongs to the same message.

@@ -120,7 +120,7 @@ impl StereoModel {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the machine has no slaves, or if it has no closed form.
+    /// Returns [`ConfigError`] if the machine has no slaves, or if it has no closed form.
     pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, ConfigError> {
         if config.n_gps < 2 {
             let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
@@ -244,8 +244,8 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time between two slaves: one is the first, the other the last to finish with all tokens of a
-    /// picture.
+    /// Returns the time from the first slave that finishes all tokens of a picture to the last slave that finishes
+    /// them.
     ///
     /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
     /// renderers than slaves, a slave can finish early. The first slave finishes when each token has visited as many
@@ -373,7 +373,7 @@ fn earliest(times: &[f64]) -> usize {
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] if the scene has no primitives.
+/// Returns [`ExperimentError::Scene`] if the scene has no primitives.
 pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentError> {
     let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
     let frames = (experiment.length() / 2).max(1);

@@ -13,7 +13,7 @@
 //! [`fifo_channels`](pxpl5_ring::RingTiming::fifo_channels) channels.
 //!
 //! The order of grants determines which renderers work at the same time, so the model processes all messages in this
-//! order. It uses the timing rules of ring, FIFO and firmware, but none of the simulator's code for them.
+//! order. The model follows the timing rules of ring, FIFO and firmware, but shares no code with the simulator.
 
 use super::copies::MAX_RENDERERS;
 use super::model::{PerTriangle, REGIONS, SlatsModel};
@@ -73,11 +73,11 @@ impl Clumps {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Scene`] if the scene has no primitives.
+    /// Returns [`ExperimentError::Scene`] if the scene has no primitives.
     ///
     /// # Panics
     ///
-    /// Never, because an experiment has a valid head-mounted display.
+    /// Never panics, because an experiment has a valid head-mounted display.
     pub(super) fn of_scene(
         model: &SlatsModel,
         experiment: &Experiment,
@@ -415,7 +415,7 @@ impl<'a> Ring<'a> {
 
     /// Returns the time at which the first GP knows that all clumps have been accepted.
     ///
-    /// Each other GP reports this by a message. Each message takes processor time of the first GP.
+    /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
         let model = self.model;
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };

@@ -144,7 +144,7 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
 
 /// Number of fields before the first picture that counts in the result.
 ///
-/// They cover the start-up, the field in which the host's first view is sent, and the field in which this view is
+/// These fields are the warm-up, the field in which the host's first view is sent, and the field in which this view is
 /// drawn.
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
@@ -178,6 +178,7 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let due = model.due(times, fields);
     let shown = due.map_or(0, |due| due.shown);
     Summary {
+        // Every shown picture has a latency of exactly one field.
         latencies_ms: std::iter::repeat_n(field_ms, shown as usize).collect(),
         field_ms,
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),

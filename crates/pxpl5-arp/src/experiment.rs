@@ -52,7 +52,7 @@ impl WalkOutcome {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] if a setting is invalid or the scene is not supported.
+    /// Returns [`ExperimentError`] if a setting is invalid or the scene is not supported.
     pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
         // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;

@@ -35,7 +35,7 @@ use crate::error::ExperimentError;
 ///
 /// # Errors
 ///
-/// Same as [`Experiments::run`].
+/// Fails in the same cases as [`Experiments::run`].
 pub fn all() -> Result<(Experiments, Vec<Row>), ExperimentError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);

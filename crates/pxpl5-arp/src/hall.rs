@@ -34,7 +34,8 @@ const MARGIN: f64 = 0.015;
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] if the scene has no path of its own. The scene's path defines the height of the eye.
+/// Returns [`ExperimentError::Scene`] if the scene has no path of its own. The scene's path defines the height of the
+/// eye.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
@@ -64,7 +65,7 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] if the result is invalid, for example because coordinates are too large.
+/// Returns [`ExperimentError::Scene`] if the result is invalid, for example because coordinates are too large.
 pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, ExperimentError> {
     let mut parts = scene.clone().into_parts();
     let factor = factor as f32;

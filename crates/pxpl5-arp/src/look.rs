@@ -23,7 +23,7 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Same as [`crate::Settings::view`].
+    /// Fails in the same cases as [`crate::Settings::view`].
     pub fn of(simulation: &Simulation<'_>) -> Result<Self, ExperimentError> {
         let settings = simulation.settings();
         let view = settings.view()?;
@@ -58,7 +58,7 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Display`] if the lens or the orientation is invalid.
+    /// Returns [`ExperimentError::Display`] if the lens or the orientation is invalid.
     pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), ExperimentError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
@@ -72,7 +72,7 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Same as [`Faces::seen`].
+    /// Fails in the same cases as [`Faces::seen`].
     pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), ExperimentError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);

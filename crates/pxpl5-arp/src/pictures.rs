@@ -52,7 +52,7 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] if a lens, scene or number is invalid. The built-in ones are valid.
+/// Returns [`ExperimentError`] if a lens, scene or number is invalid. The built-in ones are valid.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
@@ -72,7 +72,7 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] if settings are invalid, or if they do not match the cells of the world.
+/// Returns [`ExperimentError`] if settings are invalid, or if they do not match the cells of the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
@@ -112,7 +112,7 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// Distance along the path from the eye to the point that it looks at, in metres. Same as in [`Walk`].
+/// Distance along the path from the eye to the point that it looks at, in metres, as in [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
 /// Returns the orientation of a head that looks along the path. The head is `way_m` metres from the start of the path.

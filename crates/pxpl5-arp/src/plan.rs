@@ -158,7 +158,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Same as [`Self::set`], and [`ExperimentError::Value`] without an equals sign.
+    /// Fails in the same cases as [`Self::set`]. Returns [`ExperimentError::Value`] without an equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), ExperimentError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
@@ -189,7 +189,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Same as [`Settings::check`].
+    /// Fails in the same cases as [`Settings::check`].
     pub fn settings(&self) -> Result<Settings, ExperimentError> {
         let mut settings = self.chosen.clone();
         // Fill in the defaults that depend on other settings.

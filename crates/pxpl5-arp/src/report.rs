@@ -39,12 +39,12 @@ pub struct Report {
     /// Widths of the tears where different memories meet, in texels (90 degrees divided by the texels of a face's
     /// edge). Null if no memories meet.
     pub tears_px: TearsReport,
-    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. Excludes tracker
-    /// and host.
+    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
+    /// not include tracker and host.
     pub rotation_latency_ms: Latency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
-    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
     /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
     /// was drawn.
@@ -70,7 +70,7 @@ pub struct MemoryReport {
     pub eye_age_mm: f64,
     /// Latency of translation in ms, averaged over frames.
     ///
-    /// It is the time from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
     pub translation_latency_ms: Latency,
     /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,

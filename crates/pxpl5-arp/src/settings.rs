@@ -141,7 +141,7 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// Same as [`DepthRange::new`].
+    /// Fails in the same cases as [`DepthRange::new`].
     pub fn view(&self) -> Result<CubeView, ExperimentError> {
         Ok(CubeView { geometry: self.display.geometry(), depth: DepthRange::new(NEAR_M, FAR_M)? })
     }

@@ -72,9 +72,10 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// Same as [`Settings::check`].
+    /// Fails in the same cases as [`Settings::check`].
     pub fn new(world: &'a World, settings: &Settings) -> Result<Self, ExperimentError> {
         settings.check()?;
+        // With segmentation the policy assigns segments, without it whole objects.
         let units = units(world, settings.is_segmented);
         let policy = match settings.policy {
             PolicyKind::Full => Policy::Full,
@@ -133,7 +134,7 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Priority`] if the distance over which warping decreases is zero.
+    /// Returns [`ExperimentError::Priority`] if the distance over which warping decreases is zero.
     pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, ExperimentError> {
         // Ask the policy which memories are due, and collect their contents.
         let update = self.update(eye);

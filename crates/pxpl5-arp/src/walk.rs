@@ -103,7 +103,7 @@ impl WalkTally {
 ///
 /// # Errors
 ///
-/// Same as [`Simulation::new`].
+/// Fails in the same cases as [`Simulation::new`].
 pub fn walk(
     world: &World,
     settings: &Settings,

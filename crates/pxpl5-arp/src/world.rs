@@ -72,8 +72,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] if the scene has spheres, moving objects or objects fixed to the head, or if it cannot be
-    /// cut.
+    /// Returns [`ExperimentError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
+    /// cannot be cut.
     pub fn new(scene: &Scene, side_m: f64) -> Result<Self, ExperimentError> {
         check_is_static(scene)?;
         let mut world = Self {

@@ -290,7 +290,7 @@ fn what_faces_cannot_show_is_refused_by_name() {
 }
 
 #[test]
-fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
+fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
     let settings = Settings { policy: PolicyKind::Cells, ..WARPED };
     let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
     let report = serde_json::to_value(Report::of(&WORLD, &settings, &tally, None)).expect("JSON");

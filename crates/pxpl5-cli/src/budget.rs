@@ -31,8 +31,8 @@ const MOST_MEGABYTES: u64 = 16_000;
 /// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which an early run is compared with its limits. Later this happens whenever the
-/// run reports progress.
+/// Numbers of simulated fields after which an early run is compared with its limits. After the last of these fields,
+/// each report of progress is compared.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because
@@ -100,9 +100,9 @@ impl BudgetArgs {
     pub(crate) fn admit_estimate(&self, estimate: Estimate, advice: &str) -> Result<(), CliError> {
         let Estimate { bytes, seconds } = estimate;
         match self.excess(bytes / 1e6, seconds, advice) {
-            Some(reason) => {
-                Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written")))
-            }
+            Some(reason) => Err(CliError::failure(format!(
+                "{reason}; this is an estimate before the start, and nothing was written"
+            ))),
             None => Ok(()),
         }
     }

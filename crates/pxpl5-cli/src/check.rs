@@ -67,7 +67,7 @@ fn of_sweep(file: ExperimentFile) -> Result<(Plan, String), CliError> {
         None => (0, sweep.plan(0)?),
     };
     if let Some((count, point, error)) = failed {
-        warn(&[format!("{count} of {checked} points are no experiments; point {point}: {error}")], false);
+        warn(&[format!("{count} of {checked} points are not valid experiments; point {point}: {error}")], false);
     }
     let mut about = format!("# sweep of {points} points, of which {checked} were checked; point {point}:\n");
     for axis in sweep.space().axes() {

@@ -54,9 +54,9 @@ pub(crate) struct CompareArgs {
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
-    /// Write into this folder: comparison.json, rows.csv, errors.csv, charts of the error (over time, its distribution,
-    /// against latency and against prediction interval), gallery.html with the picture of every pipeline, and the
-    /// pictures of a vertical edge.
+    /// Write into this folder: comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline,
+    /// and the pictures of a vertical edge. Charts show the error over time, its distribution, and the error against
+    /// latency and against prediction interval.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Speed of the head's turn in the pictures of a vertical edge, degrees per second.

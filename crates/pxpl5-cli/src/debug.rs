@@ -92,7 +92,7 @@ fn scripted(mut session: Session, commands: &[String]) -> Result<(), CliError> {
 fn on_screen(session: Session) -> Result<(), CliError> {
     use std::io::IsTerminal;
     if !std::io::stdout().is_terminal() {
-        return Err(no_terminal("standard output is no terminal"));
+        return Err(no_terminal("standard output is not a terminal"));
     }
     screen::run(session).map_err(|error| CliError::failure(format!("the terminal cannot be used: {error}")))
 }

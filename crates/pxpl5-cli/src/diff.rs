@@ -70,6 +70,7 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
 fn report(path: &Path) -> Result<Value, CliError> {
     let file = if path.is_dir() { path.join(REPORT_FILE) } else { path.to_owned() };
     let name = file.display();
+    // In a folder, only a report that belongs to the folder's run counts.
     let read = if path.is_dir() {
         Files::of(path, false)?.first(REPORT_FILE)
     } else {
@@ -135,6 +136,7 @@ fn text(found: &Differences, pictures: &[PictureDifference]) -> String {
     if !pictures.is_empty() {
         let _ = writeln!(text, "\nPictures");
     }
+    // Pictures of different sizes have no count of differing pixels.
     for PictureDifference { name, sizes: [a, b], differing, largest } in pictures {
         let all = u64::from(a[0]) * u64::from(a[1]);
         let _ = match differing {

@@ -140,7 +140,7 @@ fn json_text(record: &LevelRecord) -> Result<String, CliError> {
 fn text(record: &LevelRecord) -> String {
     let unknown = || "-".to_owned();
     let mut text = format!(
-        "{:<28} {:>9}  {:<26} simulated seconds a second\n{:<28} {:>9}  {:<26} {:>10} {:>10} {:>10}\n",
+        "{:<28} {:>9}  {:<26} simulated seconds per second\n{:<28} {:>9}  {:<26} {:>10} {:>10} {:>10}\n",
         "", "", "against the cycle level", "level", "published", "median (5 to 95 %)", "pixels off", "lazy", "all"
     );
     // One line for each level: errors, then the speed for each choice of pixels.
@@ -167,7 +167,7 @@ fn text(record: &LevelRecord) -> String {
     let _ = write!(
         text,
         "\npublished: mean error of the free checks. Against the cycle level: {} random experiments with Rendering Control (latency)\n\
-         and Slats (time to the first copy). Pixels change no time. Measured {when} on {host}.\n",
+         and Slats (time to the first copy). Computing pixels changes no simulated time. Measured {when} on {host}.\n",
         record.experiments
     );
     if let Some(note) = &record.note {

@@ -44,7 +44,7 @@ pub(crate) struct LimitArgs {
     #[arg(long)]
     display: Option<String>,
     /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model
-    /// file that is thinned out evenly. Default: full-screen for pipelines that send all triangles to every region,
+    /// file that is decimated evenly. Default: full-screen for pipelines that send all triangles to every region,
     /// typical for all others.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
@@ -55,7 +55,7 @@ pub(crate) struct LimitArgs {
     /// sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
-    /// Greatest value of --over that is tried; default: for numbers of boards the number in the largest preset,
+    /// Greatest value of --over that is tried. Default: for numbers of boards the number in the largest preset,
     /// otherwise the greatest value that the sources allow.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,
@@ -128,7 +128,7 @@ impl LimitArgs {
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
-        // Any other scene name is a model that is thinned out to every size.
+        // Any other scene name is a model that is decimated to every size.
         let model = if self.scene.is_some() && self.test_scene().is_none() {
             Some(Model::load(plan.scene.clone())?)
         } else {
@@ -152,9 +152,11 @@ impl LimitArgs {
                 scene.name()
             )));
         }
+        // The experiment without --over gives the defaults of length, range and goal.
         let first = file.resolve()?;
         let fields = self.fields.unwrap_or(first.limit.fields).max(LEAST_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
+        // A missing end of the range comes from the sources of the parameter.
         let usual = || OverQuery::usual_values(&first, key);
         let values = match (self.from, self.to) {
             (None, None) => usual()?,
@@ -166,12 +168,14 @@ impl LimitArgs {
                         to.map_or_else(|| usual().map(|v| v.last()), Ok)?,
                     ),
                 };
+                // Two whole numbers as ends mean that only whole numbers are tried. Numbers below 1e15 convert exactly.
                 let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < 1e15;
                 let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
                 let refused = || CliError::usage(format!("--from and --to: expected a range, found {from} to {to}"));
                 values.ok_or_else(refused)?
             }
         };
+        // The largest experiment must be valid and within the budget before the search starts.
         let mut last = file.clone();
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
@@ -247,6 +251,7 @@ fn over_text(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> String {
         (true, None, Some(most)) => format!("at most {}", text(most)),
         (true, Some(least), Some(most)) => format!("from {} to {}", text(least), text(most)),
     };
+    // The cause is known only for a value that missed the goal.
     let because = match (&limit.because, limit.missed_at) {
         (Some(because), Some(at)) => format!(": with {}, {because}", text(at)),
         _ => String::new(),
@@ -328,10 +333,10 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
             scene(query),
         );
     }
-    let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
-    let island = limit.island.map_or(String::new(), |n| {
-        format!("An island above the first miss: {n} triangles reach the goal all the same.\n")
-    });
+    let first_miss =
+        limit.first_miss.map_or("no size missed the goal".to_owned(), |n| format!("the first size that missed is {n}"));
+    let island =
+        limit.island.map_or(String::new(), |n| format!("Above the first miss, {n} triangles reach the goal again.\n"));
     // Explain the search only if its result is not trivial.
     let row = if limit.unbroken_from < limit.triangles {
         format!("All sizes from {} to {} were tried, smaller ones in part.\n", limit.unbroken_from, limit.triangles)

@@ -125,7 +125,7 @@ fn one_text(machine: &MachineConfig) -> String {
     text.push('\n');
     // Parameters of the machine come first, those of tracking second.
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
-    text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
+    text.push_str("\nWith a tracked head (head.motion, --head), on every machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text
 }

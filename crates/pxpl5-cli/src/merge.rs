@@ -34,11 +34,11 @@ pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
     // Duplicates and missing points are warnings; other problems have ended the command by now.
     if let Some(first) = duplicates.first() {
         let points = were(duplicates.len() as u64, "point");
-        print_error(&format!("pxpl5: {points} there more than once, the first of them point {first}\n"));
+        print_error(&format!("pxpl5: {points} found more than once; the first is point {first}\n"));
     }
     if let Some(first) = missing.first() {
         let points = are(missing.len() as u64, "point");
-        print_error(&format!("pxpl5: {points} missing, the first of them point {first}\n"));
+        print_error(&format!("pxpl5: {points} missing; the first is point {first}\n"));
     }
     if args.quiet {
         return Ok(());

@@ -203,13 +203,13 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     let before = Manifest::read(folder)?;
     if before.as_ref().is_some_and(|before| before.command() == Manifest::SWEEP) || folder.join(ROWS_FILE).exists() {
         let folder = folder.display();
-        return Err(CliError::usage(format!("{folder}: there are rows of a sweep here; choose another folder")));
+        return Err(CliError::usage(format!("{folder}: the folder holds rows of a sweep; choose another folder")));
     }
     Ok(before)
 }
 
-/// Returns the listing of derived files. A manifest lists them only if they are written into the folder `results`, from
-/// which they derive.
+/// Returns the listing of files that are derived from a results folder, such as a report page. Such files are added to
+/// the folder's manifest only if they are written into the folder `results` itself.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {
@@ -259,7 +259,7 @@ impl OutputFile {
     fn begin(path: &Path, option: &'static str, results: Option<&Path>) -> Result<Self, CliError> {
         if path.file_name().is_none() || path.is_dir() {
             let path = path.display();
-            return Err(CliError::usage(format!("{option}: {path} is no file name; give the name of a file")));
+            return Err(CliError::usage(format!("{option}: expected the name of a file, found {path}")));
         }
         let place = Place::file(option, path);
         let target = Target::of(path, &place)?;

@@ -129,7 +129,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     if groups.iter().all(|group| group.n == 0) {
         let y = &args.y;
         return Err(CliError::failure(format!(
-            "none of {} has a number under {y}: nothing was drawn",
+            "no row of {} has a number in column {y}; nothing was drawn",
             count_of(missing, "row")
         )));
     }
@@ -141,7 +141,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     if missing > 0 {
         let (have, are) = if missing == 1 { ("has", "is") } else { ("have", "are") };
         let rows = count_of(missing, "row");
-        print_error(&format!("pxpl5: {rows} {have} no number under {} and {are} left out of the means\n", args.y));
+        print_error(&format!("pxpl5: {rows} {have} no number in column {} and {are} left out of the means\n", args.y));
     }
     if args.quiet {
         return Ok(());

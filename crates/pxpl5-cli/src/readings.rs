@@ -14,10 +14,10 @@ use std::fmt::Write;
 
 /// Rank all interpretations of the papers' open questions by how well they explain the figures of Rendering Control.
 ///
-/// Every combination of answers is simulated, with one machine for all figures. The questions are: which latency is
-/// averaged, how fields were counted, how many finished regions a renderer keeps, what the master does meanwhile with a
-/// renderer that has finished its region, which machine drew the application scenes, and whether back faces were
-/// culled.
+/// Every combination of answers is simulated, with one machine for all figures. Some questions concern the measurement:
+/// which latency is averaged, how fields were counted, which machine drew the application scenes, and whether back
+/// faces were culled. The others concern the firmware: how many finished regions a renderer keeps, and what the master
+/// does meanwhile with the renderer.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 readings
@@ -67,20 +67,20 @@ pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
 }
 
 fn text(readings: &Readings, rows: usize) -> String {
-    let mut text = format!("{} readings\n", readings.analytic.len());
+    let mut text = format!("{} interpretations\n", readings.analytic.len());
     for (level, fits) in [("analytic level", &readings.analytic), ("transaction level", &readings.transaction)] {
         if let Some(first) = fits.first() {
-            let _ = write!(text, "\n{level}, the least mean error first\n{}", header(first));
+            let _ = write!(text, "\n{level}, sorted by mean error\n{}", header(first));
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
         }
     }
     // The summary tells how far the choice is from unique.
     let _ = writeln!(
         text,
-        "\n{} of them are as good as the best but for the printed digits ({:.2} % of a mean error).",
+        "\n{} interpretations are as good as the best within the printed digits ({:.2} % of a mean error).",
         readings.as_good, readings.rounding_percent
     );
-    let _ = writeln!(text, "\nEach figure as the reading predicts it that the others choose:");
+    let _ = writeln!(text, "\nEach figure, predicted by the interpretation that fits the other figures best:");
     readings.left_out.iter().for_each(|one| text.push_str(&left_out(one)));
     text
 }
@@ -89,7 +89,7 @@ fn header(fit: &Fit) -> String {
     let figures: String = fit.figures.iter().map(|figure| format!(" {:>8}", figure.id)).collect();
     let published: String = fit.figures.iter().map(|figure| format!(" {:>8.2}", figure.published)).collect();
     format!(
-        "{:>7} {:>8} {:>7}{figures}  reading\n{:>7} {:>8} {:>7}{published}  published\n",
+        "{:>7} {:>8} {:>7}{figures}  interpretation\n{:>7} {:>8} {:>7}{published}  published\n",
         "mean %", "worst %", "log L", "", "", ""
     )
 }

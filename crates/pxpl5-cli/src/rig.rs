@@ -120,7 +120,7 @@ Outside, tracking: from the bob's low point to the step of the D/A line, which t
 (Rendering Control: the host, at SEND; Slats: the graphics processor, with its field).
 Outside, rendering: from that step to the light of the frame under the photodiode.
 Inside, tracking: from the time stamp of the report that shows the low point to the start of the frame.
-Inside, rendering: from the start of the frame to where the pipeline says that the frame is shown.
+Inside, rendering: from the start of the frame to the time at which the pipeline counts the frame as shown.
 ";
 
 fn cell(latency: &Latency) -> String {
@@ -130,7 +130,7 @@ fn cell(latency: &Latency) -> String {
 
 fn verdict(measured: &Measurement) -> String {
     format!(
-        "Outside less inside: {:.2} ms. Expected: 0 to {:.2} ms of tracking (a report's interval) and {:.2} to {:.2} ms of rendering (the \
+        "Outside minus inside: {:.2} ms. Expected: 0 to {:.2} ms of tracking (a report's interval) and {:.2} to {:.2} ms of rendering (the \
          photodiode's place in the scan). They {}.",
         measured.outside_less_inside_s() * 1e3,
         measured.tracking_bound_ps as f64 * 1e-9,

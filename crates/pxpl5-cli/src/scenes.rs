@@ -27,7 +27,7 @@ pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     Ok(scene)
 }
 
-/// Prints warnings about parts of a scene's file that the reader changed.
+/// Prints warnings about parts of a scene's file that the importer has changed.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);
@@ -39,5 +39,5 @@ pub(crate) fn run(args: ScenesArgs) -> Result<(), CliError> {
         return print(&format!("{:#}\n", json!({"schema": "pxpl5-scenes/1", "scenes": scenes})));
     }
     let lines: String = scene::names().iter().map(|(name, about)| format!("{name:<15} {about}\n")).collect();
-    print(&format!("{lines}\nAny model file (.ply, .obj, .pdb) will do as well: pxpl5 run --scene FILE\n"))
+    print(&format!("{lines}\nA model file (.ply, .obj, .pdb) can replace a built-in scene: pxpl5 run --scene FILE\n"))
 }

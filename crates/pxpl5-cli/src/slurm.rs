@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Slurm restarts a task after its node was lost. The restarted task keeps the rows that the earlier task has written.
-//! If the earlier task still runs on a node that does not answer, the restarted task waits, because two processes must
-//! not write into one folder.
+//! The earlier task may still run on a node that does not answer. The restarted task then waits, because two processes
+//! must not write into one folder.
 //!
 //! The scripts request time and memory according to estimates of a sample of points, which are spread evenly over the
 //! parameter space ([`Resources`]).
@@ -34,8 +34,8 @@ pub(crate) struct Jobs<'a> {
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. The value is far above the time to start a task. It is also far below the delay that is
-/// acceptable for the last task.
+/// Seconds of work in one task. A longer task would delay the end of the sweep too much. A shorter task would not be
+/// worth the time to start it.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
@@ -106,7 +106,8 @@ impl Sample {
 }
 
 /// Returns at most `most` distinct indices of points that are spread evenly over every axis. The step between indices
-/// is the golden section of the number of points, increased until both have no common factor.
+/// is 0.618 times the number of points (golden section). The step is increased until it has no common factor with the
+/// number of points, so that no index occurs twice.
 fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     let golden = (points as f64 * 0.618_033_988_75) as u64;
     let step = (golden..).find(|step| common_factor(*step, points) == 1).unwrap_or(1);
@@ -237,7 +238,7 @@ impl Scripts {
 set -u
 pxpl5=${{PXPL5:-{command}}}
 out={out}
-# Exit code {BUSY}: another process writes into the shard. It is this task from before, on a node that was lost and still works.
+# Exit code {BUSY}: another process writes into the shard. It is an earlier start of this task, on a node that was lost but still runs.
 while :; do
     \"$pxpl5\" sweep {file}{sets} --out \"$out/shard-$SLURM_ARRAY_TASK_ID\" --shard \"$SLURM_ARRAY_TASK_ID/{tasks}\" \\
         --threads {threads} --resume --quiet

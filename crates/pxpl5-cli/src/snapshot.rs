@@ -1,4 +1,4 @@
-//! Executes an experiment within its budget, and saves and restores snapshots.
+//! Executes an experiment within its budget, and saves and restores checkpoints.
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
@@ -17,16 +17,16 @@ use pxpl5::{
 use pxpl5_sim::parameters::text_of;
 use std::path::{Path, PathBuf};
 
-/// Options to save a snapshot of a run, or to resume a run from a snapshot.
+/// Options to save a checkpoint of a run, or to resume a run from a checkpoint.
 #[derive(Args, Debug, Default)]
 pub(crate) struct SnapshotArgs {
-    /// Save a snapshot at the first retrace of this field into the file of --save, and continue.
+    /// Save a checkpoint at the first retrace of this field into the file of --save, and continue.
     #[arg(long, value_name = "FIELD", requires = "save", value_parser = whole::<u64>(0, 10_000_000))]
     save_at: Option<u64>,
-    /// File into which the snapshot is saved.
+    /// File into which the checkpoint is saved.
     #[arg(long, value_name = "FILE", requires = "save_at")]
     save: Option<PathBuf>,
-    /// Resume from a snapshot: the run is repeated without pixels up to the saved field, compared with the snapshot,
+    /// Resume from a checkpoint. The run is repeated without pixels up to the saved field, compared with the checkpoint,
     /// and continued.
     #[arg(long, value_name = "FILE")]
     restore: Option<PathBuf>,
@@ -79,22 +79,24 @@ impl Simulated {
     }
 }
 
-/// Prefixes of the keys that a command may set when it restores a snapshot. The snapshot determines all other keys.
+/// Prefixes of the keys that a command may set when it restores a checkpoint. The checkpoint determines all other keys.
 const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// Returns the experiment of the snapshot, changed by the given settings. Returns `given` if no snapshot is
+    /// Returns the experiment of the checkpoint, changed by the given settings. Returns `given` if no checkpoint is
     /// restored.
     ///
     /// # Errors
     ///
-    /// Fails when the snapshot cannot be used, or a setting contradicts the snapshot.
+    /// Fails when the checkpoint cannot be used, or a setting contradicts the checkpoint.
     pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
         let Some(path) = &self.restore else { return Ok(given) };
-        // Most settings are part of the snapshot, and changing them would change the run.
+        // Most settings are part of the checkpoint, and changing them would change the run.
         if let Some(key) = given.keys().find(|key| !KEYS_BESIDE_SNAPSHOT.iter().any(|allowed| key.starts_with(allowed)))
         {
-            let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
+            let message = format!(
+                "{key} comes from the checkpoint; with --restore, only fields, pixels, measure and output can be set"
+            );
             return Err(CliError::usage(message));
         }
         let name = path.display().to_string();
@@ -110,11 +112,11 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan. Saves or restores a snapshot at its field, if an option requests this.
+    /// Simulates the plan. Saves or restores a checkpoint at its field, if an option requests this.
     ///
     /// # Errors
     ///
-    /// Fails when the run fails, differs from the snapshot, or the snapshot cannot be written.
+    /// Fails when the run fails, differs from the checkpoint, or the checkpoint cannot be written.
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let saving = self.saving(plan)?;
         // The text is written after the run, so that an interrupted run leaves no file.
@@ -129,7 +131,7 @@ impl SnapshotArgs {
         let restored = self.restored(plan)?;
         if let Some((snapshot, name)) = &restored {
             snapshot.check_scene(&scene, name)?;
-            // Pixels of pictures before the snapshot are computed only if they are read.
+            // Pixels of pictures before the checkpoint are computed only if they are read.
             experiment = experiment.pixels(if plan.pixels == Pixels::All { Pixels::Lazy } else { plan.pixels });
         }
         // The run stops at these fields: to save, to compare, and to extrapolate its cost early.
@@ -143,7 +145,7 @@ impl SnapshotArgs {
             let done = field.since(PeriodNumber::FIRST);
             bar.set_position(done);
             watch.check(done).map_err(ExperimentError::Stopped)?;
-            // The repeated part must match the snapshot before the run continues.
+            // The repeated part must match the checkpoint before the run continues.
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
                 continue_pixels(plan, machine, host);
@@ -169,7 +171,7 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// Returns the snapshot that `--restore` names, with its file name. Checks that the snapshot's field lies within
+    /// Returns the checkpoint that `--restore` names, with its file name. Checks that its field lies within
     /// the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };

@@ -137,11 +137,11 @@ const INTERRUPTED: i32 = 130;
 fn install_interrupt_handler(args: &SweepArgs) -> Result<(), CliError> {
     let again = again(args);
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
-    listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be listened for: {error}")))
+    listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be handled: {error}")))
 }
 
 fn end_interrupted(again: &str) {
-    print_error(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
+    print_error(&format!("\npxpl5: interrupted; the finished points are kept. To continue:\n  {again}\n"));
     std::process::exit(INTERRUPTED);
 }
 

@@ -23,11 +23,13 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             match (form.estimates.fields_needed)(&experiment) {
                 Some(needed) if needed <= fields.max(SHORT_RUN) => return None,
                 Some(needed) => {
-                    format!("by the closed form the first picture with a latency is shown after about {needed} fields")
+                    format!(
+                        "the analytic level predicts that the first picture with a latency is shown after about {needed} fields"
+                    )
                 }
                 // The closed form covers only some machines and displays. Without a prediction there is no warning.
                 None if (form.summary)(&experiment).is_ok_and(|summary| summary.updates_hz.is_none()) => {
-                    "by the closed form no picture is shown in time".to_owned()
+                    "the analytic level predicts that no picture is shown in time".to_owned()
                 }
                 None => return None,
             }
@@ -38,7 +40,7 @@ pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<
             if transform <= fields as f64 {
                 return None;
             }
-            format!("the processors take about {transform:.0} fields to transform all of it once")
+            format!("the processors take about {transform:.0} fields to transform the whole scene once")
         }
     };
     Some(format!(

@@ -83,7 +83,7 @@ fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
 fn run_prints_a_table_and_nothing_when_quiet() {
     let folder = Folder::new("arp-text");
     let text = out(&folder.run(&arp("run", &["--policy", "objects"])));
-    for part in ["policy objects", "updates/s", "objects that changed memory", "cells dealt anew              -"] {
+    for part in ["policy objects", "updates/s", "objects that changed memory", "new assignments of cells      -"] {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert_eq!(out(&folder.run(&arp("run", &["--quiet"]))), "");

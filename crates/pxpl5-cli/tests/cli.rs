@@ -439,7 +439,7 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
 }
 
 #[test]
-fn a_run_goes_on_from_a_snapshot_to_the_same_trace() {
+fn a_run_continued_from_a_checkpoint_has_the_same_trace() {
     let folder = Folder::new("snapshot");
     let whole = json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json", "--seed", "4"])));
     for more in [&[][..], &["--pixels", "off"], &["--pixels", "all", "--threads", "2"]] {
@@ -464,13 +464,13 @@ fn a_run_goes_on_from_a_snapshot_to_the_same_trace() {
 }
 
 #[test]
-fn an_unusable_snapshot_is_refused_with_the_reason() {
+fn an_unusable_checkpoint_is_refused_with_the_reason() {
     let folder = Folder::new("bad-snapshot");
     json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json"])));
     let text = std::fs::read_to_string(folder.0.join("s.json")).expect("saved");
     for (name, contents, says) in [
         ("cut.json", text[..text.len() / 2].to_owned(), "not whole JSON"),
-        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: its checksum"),
+        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: expected checksum"),
         ("newer.json", text.replace("snapshot/1", "snapshot/9"), "found pxpl5-snapshot/9"),
         ("report.json", "{\"schema\": \"pxpl5-report/1\"}".to_owned(), "found pxpl5-report/1"),
         ("picture.png", "\u{89}PNG".to_owned(), "no snapshot"),
@@ -480,7 +480,7 @@ fn an_unusable_snapshot_is_refused_with_the_reason() {
     }
     let path = folder.0.join("s.json");
     let path = path.to_str().expect("text");
-    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed is in the snapshot"]);
+    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed comes from the checkpoint"]);
     refused(&["run", "--restore", path, "--fields", "9"], 2, &["expected at least 10"]);
     refused(&["run", "--restore", "missing.json"], 1, &["missing.json"]);
     refused(&with(&RC, &["--save-at", "24", "--save", "s"]), 2, &["from 1 to 23, found 24"]);
@@ -488,7 +488,7 @@ fn an_unusable_snapshot_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
+fn a_checkpoint_of_a_changed_model_file_is_refused() {
     let folder = Folder::new("changed");
     folder.file("m.ply", ply("0 0 0", "2", 1));
     let args =
@@ -498,7 +498,7 @@ fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
     folder.file("m.ply", ply("0 0 1", "2", 1));
     let output = folder.run(&["run", "--restore", "s.json"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(err(&output).contains("s.json: the run is not the one that was saved"), "{}", err(&output));
+    assert!(err(&output).contains("s.json: the repeated run differs from the saved run"), "{}", err(&output));
 }
 
 /// Returns the names and texts of the repository's experiment files.

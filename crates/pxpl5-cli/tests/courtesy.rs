@@ -197,7 +197,7 @@ fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     ] {
         let output = folder.run(&[&frameless[..], &set, &limit].concat());
         let text = err(&output);
-        assert!(output.status.code() == Some(1) && text.contains("estimated before it starts"), "{set:?}: {text}");
+        assert!(output.status.code() == Some(1) && text.contains("an estimate before the start"), "{set:?}: {text}");
         let number = text.split("expected to take ").nth(1).and_then(|rest| rest.split(' ').next()?.parse().ok());
         assert!(number.is_some_and(|number: u64| (least..=most).contains(&number)), "{set:?}: {text}");
         assert!(folder.names().is_empty(), "{set:?} left {:?}", folder.names());
@@ -218,7 +218,7 @@ fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
         let output = folder.run(args);
         let text = err(&output);
         assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
-        assert!(text.contains("expected to take") && text.contains("estimated before it starts"), "{args:?}: {text}");
+        assert!(text.contains("expected to take") && text.contains("an estimate before the start"), "{args:?}: {text}");
         assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
     }
 }
@@ -281,7 +281,7 @@ fn a_scene_that_is_too_heavy_to_be_shown_is_told_before_the_run() {
     assert_eq!(code, Some(1));
     // Without a closed form: 100,000 triangles of 21.7 us on 13 processors take 10 fields.
     let (said, _) = heavy("jitp-field", "typical:100000", "5");
-    assert!(said.is_some_and(|said| said.contains("to transform all of it once")));
+    assert!(said.is_some_and(|said| said.contains("to transform the whole scene once")));
     for (pipeline, scene, fields) in [("rendering-control", "full-screen:12", "30"), ("slats", "full-screen:12", "30")]
     {
         assert_eq!(heavy(pipeline, scene, fields).0, None, "{pipeline} {scene}");

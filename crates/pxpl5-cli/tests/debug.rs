@@ -78,7 +78,7 @@ fn a_script_runs_to_times_fields_boards_and_conditions() {
 
 /// Tests that a snapshot contains the hash of all events before its field, as in a run without a snapshot.
 #[test]
-fn the_trace_is_that_of_the_run_however_often_somebody_looked() {
+fn debugger_commands_do_not_change_the_trace_of_the_run() {
     let folder = Folder::new("debug-trace");
     let saved = folder.run(&[&["run"], &SLATS[1..], &["--save-at", "5", "--save", "s.json", "--quiet"]].concat());
     assert!(saved.status.success(), "{}", err(&saved));

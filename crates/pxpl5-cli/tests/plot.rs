@@ -67,7 +67,7 @@ fn means_deviations_and_intervals_are_those_of_the_seeds() {
 }
 
 #[test]
-fn what_was_not_judged_is_no_zero() {
+fn a_result_that_was_not_evaluated_is_not_zero() {
     let folder = Folder::new("plot-null");
     sweep(&folder, |copy, n, seed| if (copy, n) == ("split", 4) || seed == 3 { Value::Null } else { json!(seed) });
     let run = folder.run(&["plot", "rows.jsonl", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);

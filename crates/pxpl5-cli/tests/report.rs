@@ -164,7 +164,7 @@ fn a_report_reads_what_its_manifest_lists_and_nothing_else() {
     assert_eq!(pictures(true), 1);
     let manifest = std::fs::read(folder.0.join("results/manifest.json")).expect("written");
     std::fs::remove_file(folder.0.join("results/manifest.json")).expect("there");
-    assert_eq!(pictures(true), 0, "nobody knows of which run they are");
+    assert_eq!(pictures(true), 0, "their run is not known");
     folder.file("results/manifest.json", &manifest);
     folder.file("results/report.json", "{}");
     let output = folder.run(&["report", "results"]);

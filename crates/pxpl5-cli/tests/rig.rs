@@ -40,6 +40,6 @@ fn displays_that_turn_with_the_head_are_refused_with_the_reason() {
         let output = folder.run(&["rig", "--pipeline", pipeline, "--tracker", "ideal", "--passes", "2"]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
-        assert!(said.contains("expected a pipeline whose frames a photodiode can tell apart"), "{said}");
+        assert!(said.contains("expected a pipeline whose frames a photodiode can distinguish"), "{said}");
     }
 }

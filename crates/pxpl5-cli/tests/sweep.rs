@@ -152,7 +152,7 @@ fn merge_finds_missing_duplicate_and_contradicting_points() {
     assert_eq!(points(&folder.0.join("part/rows.jsonl")).len(), POINTS / 2);
     let twice = folder.run(&["merge", "1", "2", "1", "--out", "joined"]);
     succeeds(&twice);
-    assert!(err(&twice).contains("32 points were there more than once, the first of them point 0"), "{}", err(&twice));
+    assert!(err(&twice).contains("32 points were found more than once; the first is point 0"), "{}", err(&twice));
     assert!(out(&twice).contains("64 points, 0 of them failed"), "{}", out(&twice));
     let rows = read(&folder, "1/rows.jsonl");
     fs::create_dir(folder.0.join("3")).expect("ours");
@@ -333,7 +333,7 @@ fn a_folder_in_use_is_told_from_what_cannot_succeed_later() {
     let folder = folder("busy");
     fs::create_dir(folder.0.join("a")).expect("ours");
     let lock = fs::File::create(folder.0.join("a/.lock")).expect("ours");
-    lock.lock().expect("nobody else has it");
+    lock.lock().expect("no other thread holds it");
     let refused = sweep(&folder, &["--out", "a", "--resume"]);
     assert_eq!(refused.status.code(), Some(75));
     assert!(err(&refused).contains("another process is writing here"), "{}", err(&refused));

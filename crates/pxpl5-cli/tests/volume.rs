@@ -46,7 +46,8 @@ fn run_prints_one_json_object_and_writes_the_same() {
 fn run_prints_a_table_and_what_is_beyond_the_paper() {
     let folder = Folder::new("volume-text");
     let text = out(&folder.run(&volume("run", &["--strobes", "mirror"])));
-    for part in ["mig (417 primitives)", "18 in 1 passes", "Beyond the paper: mirrored strobes.", "volumes a second"] {
+    for part in ["mig (417 primitives)", "18 in 1 passes", "Beyond the paper: mirrored strobes.", "volumes per second"]
+    {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert_eq!(out(&folder.run(&volume("run", &["--quiet"]))), "");

@@ -201,8 +201,7 @@ mod tests {
         CopyTarget { frame_buffer: NodeId(7), buffer: 0, lines, grid, region, picture }
     }
 
-    /// Writes the picture number of a region into all its pixels. The pixels are computed from grid and lines, without
-    /// `segments`.
+    /// Reference model: writes the picture number of a region into all its pixels, without the function `segments`.
     fn paint(frame: &mut [u64], target: &CopyTarget) {
         let [left, top, width, height] = target.grid.rectangle(target.region);
         for row in top..top + height {
@@ -221,10 +220,10 @@ mod tests {
         frame
     }
 
-    /// A search removes exactly the regions of which no pixel is visible. The number of kept regions stays below a
-    /// bound: the visible regions, and twice the number that the last search has left.
+    /// A search removes exactly the regions of which no pixel is visible. The number of kept regions stays below the
+    /// number of visible regions plus twice the number of regions that the last search kept.
     #[test]
-    fn what_is_forgotten_is_what_later_regions_have_covered() {
+    fn discarded_regions_are_exactly_those_that_later_regions_cover() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];

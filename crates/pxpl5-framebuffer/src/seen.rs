@@ -115,9 +115,9 @@ impl ScannedField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel. If a
-    /// message has not ended at the end of the field, all its words count as missing, because the board learns only of
-    /// whole messages. On the published ring, which is faster than the beam, none of these words is in time anyway.
+    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel. The
+    /// board learns only of whole messages. If a message has not ended at the end of the field, all its words therefore
+    /// count as missing. On the published ring, which is faster than the beam, none of these words is in time anyway.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
         let has_come = segment.message_at < self.ends_at;

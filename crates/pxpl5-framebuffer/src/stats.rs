@@ -11,8 +11,8 @@ pub struct FrameBufferStats {
     pub regions: u64,
     /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes: the
-    /// newer region came too early, the older region came too late, or the buffer was shown for only one field, which
+    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes. The
+    /// newer region came too early. The older region came too late. Or the buffer was shown for only one field, which
     /// scans every second line.
     pub lines_never_shown: u64,
 }

@@ -220,7 +220,7 @@ fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
 }
 
 #[test]
-fn nobody_computes_pixels_until_somebody_looks_and_hidden_ones_never() {
+fn pixels_are_computed_when_a_picture_is_read_and_hidden_pixels_never() {
     let mut board = Board::new();
     let hidden = source(RED, 0, 128 * 120);
     let shown = source(GREEN, 0, 128 * 120);
@@ -237,7 +237,7 @@ fn nobody_computes_pixels_until_somebody_looks_and_hidden_ones_never() {
 }
 
 #[test]
-fn what_cannot_be_seen_any_more_is_forgotten() {
+fn regions_that_cannot_be_seen_are_discarded() {
     let mut board = Board::new();
     let mut images = Vec::new();
     for field in 0..400u64 {
@@ -260,7 +260,7 @@ fn what_cannot_be_seen_any_more_is_forgotten() {
 }
 
 #[test]
-fn regions_of_other_cuts_are_forgotten_when_newer_ones_cover_them() {
+fn regions_of_other_grids_are_discarded_when_newer_regions_cover_them() {
     let mut board = Board::new();
     let first = colour(RED);
     let old = Arc::downgrade(&first);

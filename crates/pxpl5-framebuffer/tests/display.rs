@@ -182,7 +182,7 @@ fn a_port_takes_pixels_and_requests_for_its_own_eye() {
 }
 
 #[test]
-fn lines_that_nobody_saw_are_counted_for_both_eyes() {
+fn lines_that_were_never_shown_are_counted_for_both_eyes() {
     let mut rig = Rig::new();
     rig.tick(0);
     for port in [0, 1] {

@@ -55,8 +55,8 @@ impl Copied {
     }
 }
 
-/// Returns the time at which odd field 5 scans a pixel, from the standard: two frames of 525 lines, 262.5 lines of the
-/// even field and the half line, 22 blank lines.
+/// Returns the time at which odd field 5 scans a pixel, from the standard. Before field 5 come two frames of 525 lines
+/// and an even field of 262.5 lines. Field 5 begins with 22 blank lines.
 fn scanned_at(x: u32, y: u32) -> Option<u64> {
     let line = 2 * 525 + 263 + 22 + u64::from(y / 2);
     (y % 2 == 1).then(|| (line * 780 + 140 + u64::from(x)) * 11_000_000 / 135)

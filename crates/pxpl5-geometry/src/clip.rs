@@ -5,8 +5,8 @@
 //! that leaves the picture but not the guard band is not clipped; edge expressions handle it.
 //!
 //! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The ends of an edge have a fixed
-//! order, given by their clip coordinates, and the cut is computed from the lesser to the greater end. So the winding
-//! of a triangle has no effect, and the cut opens no gap.
+//! order, given by their clip coordinates. The cut is computed from the lesser to the greater end. So the winding of a
+//! triangle has no effect, and the cut opens no gap.
 //!
 //! Cuts are computed in double precision until they are on the screen. Close to the eye, the small coordinates of a
 //! long edge are differences of large numbers. With a cut that is some pixels off, the pieces of a triangle could fold
@@ -134,8 +134,8 @@ impl Guard {
         out
     }
 
-    /// Returns the point where an edge crosses a plane. It is computed from the end that comes first in the order of
-    /// clip coordinates.
+    /// Returns the point where an edge crosses a plane. The ends are taken in the order of their clip coordinates, so
+    /// that both triangles at a shared edge get the same point.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),

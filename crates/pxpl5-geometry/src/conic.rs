@@ -129,10 +129,10 @@ impl Conic {
     /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. The rectangle is given by
     /// its first and last pixel along x, and along y.
     ///
-    /// The values are scaled by a power of two, the largest with which they fit 46 bits on the whole rectangle. The
+    /// The values are scaled by the largest power of two with which they fit 46 bits on the whole rectangle. The
     /// coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as origin. So the
-    /// rounding error grows with the distance from (px, py), and not from the picture's corner. Callers pass the pixel
-    /// of the greatest value, which is `peak`; then even a small sphere keeps a covered pixel.
+    /// rounding error is smallest at (px, py) and grows with the distance from this pixel. Callers pass the pixel at
+    /// which the value is greatest (`peak`), so that even a small sphere covers a pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);

@@ -396,8 +396,8 @@ impl Kernel {
 
     /// Returns the parts of the scheduled code that depend on the surface.
     ///
-    /// The parts are: size of a command; code before, in and after the computation of the corners' surface values; code
-    /// for the two sides of a triangle; code for the words of the command.
+    /// The first part is the size of a command. Then follows code before, in and after the computation of the corners'
+    /// surface values. The last parts are code for the two sides of a triangle, and code for the words of the command.
     fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
         // Phong commands have the colour as a further word, so they are longer.
         match (self.surface, strips) {
@@ -528,8 +528,8 @@ impl Kernel {
         words.0
     }
 
-    /// Returns, for the front and the back of a triangle, the scale from surface values to plane values, and half a
-    /// unit minus the bias of that scale.
+    /// Returns two numbers each for the front and the back of a triangle: the scale from surface values to plane
+    /// values, and half a unit minus the bias.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),

@@ -58,7 +58,7 @@ impl<'a> TriangleLanes<'a> {
     /// All corners must come from the same view.
     ///
     /// # Panics
-    /// If [`LANES`] triangles have already been added.
+    /// Panics if [`LANES`] triangles have already been added.
     #[inline(always)]
     #[must_use]
     pub fn push(&mut self, [a, b, c]: [&'a SurfaceVertex; 3]) -> bool {
@@ -75,7 +75,7 @@ impl<'a> TriangleLanes<'a> {
     /// Adds a placeholder for an invisible triangle.
     ///
     /// # Panics
-    /// If [`LANES`] triangles have already been added.
+    /// Panics if [`LANES`] triangles have already been added.
     pub fn push_nothing(&mut self) {
         for corner in &mut self.corners {
             corner[self.len] = &NOWHERE;
@@ -168,7 +168,7 @@ impl GouraudLanes {
     /// Returns the expressions of triangle `i`, in the order of [`TriangleLanes::push`].
     ///
     /// # Panics
-    /// If `i` is not below [`LANES`].
+    /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize) -> GouraudTriangle {
@@ -191,7 +191,7 @@ impl PhongLanes {
     /// Returns the expressions of triangle `i`, with the given colour.
     ///
     /// # Panics
-    /// If `i` is not below [`LANES`].
+    /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize, colour: [u8; 3]) -> PhongTriangle {

@@ -19,8 +19,8 @@
 //! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. The sides of the
 //!    picture clip nothing. A shared edge is cut at the same point for both of its triangles.
 //! 4. **Divide** by w without a divider: a seed of 8 bits and two Newton steps in single precision. **Snap** to 1/16 px
-//!    of the *frame*. A field is exactly the even or odd lines of its frame: the vertices are the same, and the
-//!    expressions are restated for every second line.
+//!    of the *frame*. A field is exactly the even or odd lines of its frame. The vertices are the same, and the
+//!    expressions are converted to every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). A triangle inside one region, the
 //!    common case, needs one comparison per side. [`Transform::bin`] and [`Transform::touched`] stop here.

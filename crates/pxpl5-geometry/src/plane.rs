@@ -1,15 +1,16 @@
 //! Planes: linear expressions that pass through one value at each of three corners.
 //!
-//! Slopes are rounded to integers. At distance (dx, dy) from the reference pixel, the error of a plane's value is at
-//! most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the slopes adds 1/2 for each
-//! pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2, and 2^-15 for each pixel
-//! (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the triangle's bounding box. So
+//! Slopes are rounded to integers. Let (dx, dy) be the distance from the reference pixel. The error of a plane's value
+//! is at most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the slopes adds 1/2
+//! for each pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2, and 2^-15 for
+//! each pixel (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the triangle's bounding
+//! box. So
 //! |dx| + |dy| is at most half the sum of the picture's width and height. On the largest picture, the error is below
 //! 1,026.
 //!
-//! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range, 2^32,
-//! within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. So coefficients modulo 2^32 give
-//! the right value wherever the true value fits 32 bits. These pixels include every covered pixel.
+//! A depth slope can need more than 32 bits. For example, the depth of a wall seen edge-on can change by the whole
+//! range, 2^32, within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. So coefficients
+//! modulo 2^32 give the right value wherever the true value fits 32 bits. These pixels include every covered pixel.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;

@@ -38,8 +38,8 @@ pub struct ScreenSphere {
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
-    /// The sphere's image as a conic `Q = bulge^2`. The bulge is the distance from the plane `depth` forward to the
-    /// sphere's surface, in units of the depth expression.
+    /// The sphere's image as a conic `Q = bulge^2`. The bulge at a pixel is the depth of the plane `depth` minus the
+    /// depth of the sphere's surface, in units of the depth expression.
     pub(crate) conic: Conic,
     /// Position, value and size of the conic around its maximum.
     pub(crate) ellipse: Ellipse,

@@ -28,7 +28,7 @@ impl Touched {
     /// Returns the binning result of triangle `i`.
     ///
     /// # Panics
-    /// If there is no triangle `i`.
+    /// Panics if there is no triangle `i`.
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Touch {
@@ -45,7 +45,7 @@ impl Touched {
     /// Returns the region of triangle `i` if the triangle touches exactly one region.
     ///
     /// # Panics
-    /// If there is no triangle `i`.
+    /// Panics if there is no triangle `i`.
     #[inline(always)]
     #[must_use]
     pub fn only_region(&self, i: usize) -> Option<RegionId> {
@@ -75,7 +75,7 @@ impl Transform {
     /// vertices must come from this view.
     ///
     /// # Panics
-    /// If a corner's index is not in `vertices`.
+    /// Panics if a corner's index is not in `vertices`.
     #[must_use]
     pub fn touched(&self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.len()), several: Vec::new() };

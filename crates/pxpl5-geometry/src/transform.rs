@@ -196,7 +196,7 @@ impl Transform {
     /// Prepares a view of the world for one picture.
     ///
     /// # Errors
-    /// [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
+    /// Returns [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);

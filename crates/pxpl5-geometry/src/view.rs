@@ -89,7 +89,8 @@ impl Viewport {
     /// Creates a picture with any size and any division into regions.
     ///
     /// # Errors
-    /// [`ViewError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can hold.
+    /// Returns [`ViewError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can
+    /// hold.
     pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, ViewError> {
         let step = Self { grid, lines }.line_step();
         let frame_lines = grid.height.saturating_mul(step);

@@ -326,7 +326,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Memory`] if the bytes do not fit.
+    /// Returns [`Fault::Memory`] if the bytes do not fit.
     pub fn reserve(&self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), Fault> {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }

@@ -91,7 +91,7 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// [`OutOfMemory`] if the bytes do not fit beside those of the other purposes. Nothing changes then.
+    /// Returns [`OutOfMemory`] if the bytes do not fit beside those of the other purposes. Nothing changes then.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];

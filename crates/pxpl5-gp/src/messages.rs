@@ -40,13 +40,13 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message in four steps: spends the CPU time of its reception, does `work`, sends `messages` one by one,
+    /// Answers a message. The function spends the CPU time of its reception, does `work`, sends `messages` one by one,
     /// and sends `last` in the background. Each of `messages` waits until the clump buffer (the memory for outgoing
     /// messages) is free. The program does not wait for `last`.
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if i860 code does not return.
+    /// Returns [`Fault::Processor`] if i860 code does not return.
     pub async fn answer(
         &self,
         received: &Received,

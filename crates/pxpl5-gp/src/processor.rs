@@ -133,10 +133,10 @@ const LINK: usize = 1;
 /// write by Rust code counts as a write by i860 code before the call: it takes no time and changes no cache.
 ///
 /// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
-/// calls have the code, arguments and parameters of an earlier call; while the head moves, none have. (The sample has
-/// 188 calls of Slats with 110 triangles and 2,800 calls of Rendering Control with the aircraft, over 48 fields each.)
-/// But a call with equal inputs finds other lines in the caches, because their replacement is pseudo-random, and
-/// another phase of the memory refresh. The clocks of short runs of instructions can be reused: see
+/// calls have the code, arguments and parameters of an earlier call. While the head moves, none have. The sample covers
+/// 48 fields each: 188 calls of Slats with 110 triangles and 2,800 calls of Rendering Control with the aircraft.
+/// However, a call with equal inputs finds other lines in the caches, because their replacement is pseudo-random. It
+/// also finds another phase of the memory refresh. The clocks of short runs of instructions can be reused: see
 /// [`i860::Config::memoise`].
 pub struct Processor {
     gp: NodeId,
@@ -243,7 +243,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] if the words do not fit. Nothing is written then.
+    /// Returns [`ProcessorFault::Unmapped`] if the words do not fit. Nothing is written then.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
         self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))?;
         let end = address.saturating_add(4 * words.len() as u32);
@@ -259,7 +259,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] if a word lies outside the memory.
+    /// Returns [`ProcessorFault::Unmapped`] if a word lies outside the memory.
     pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
         self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
     }
@@ -280,7 +280,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::NoRoom`] if the output does not fit beside the other context. Nothing changes then.
+    /// Returns [`ProcessorFault::NoRoom`] if the output does not fit beside the other context. Nothing changes then.
     pub fn place_output(&mut self, context: u8, end_of_data: u32, bytes: u32) -> Result<u32, ProcessorFault> {
         // Find the free range beside the other context.
         let [lower, upper] = &self.outputs;
@@ -312,7 +312,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the program traps, or does not return within `budget` instructions.
+    /// Returns [`ProcessorFault`] if the program traps, or does not return within `budget` instructions.
     pub fn call(
         &mut self,
         program: &Arc<Program>,

@@ -10,9 +10,9 @@
 //! The original software is not published. kernels/ring_rules.md states the assumptions about the original software,
 //! and how the code was written.
 //!
-//! Before each call, Rust code does the work of the interface's DMA. The Rust code puts a message into the next receive
-//! buffer when the message software begins, because the board's inbox has no limited number of buffers. When a chain is
-//! built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code does the work of the interface's DMA. The board's inbox has no limited number of
+//! buffers. The Rust code therefore puts a message into the next receive buffer when the message software begins. When
+//! a chain is built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -72,8 +72,8 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`] if the
-    /// code does not return.
+    /// Returns [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`]
+    /// if the code does not return.
     pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
         let (kind, length, words) = match body {
             Body::Words(words) => (0, words.len() as u32, &words[..]),
@@ -96,7 +96,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
+    /// Returns [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
         // The address of the words is 0, because their content does not travel through this memory.
         let request = |(message, hold): (&Message, bool)| {

@@ -73,8 +73,8 @@ impl GpTiming {
     /// Returns this table with the primitive times of i860 code. `version` selects the code, and `of` the program that
     /// uses it.
     ///
-    /// For PPHIGS only the scheduled code has times: it fits the instruction cache, and every PPHIGS of the papers was
-    /// such code.
+    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, as the code of every PPHIGS in
+    /// the papers did.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
         match (of, version) {

@@ -15,7 +15,7 @@ pub trait Work {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault`] if the code does not return.
+    /// Returns [`ProcessorFault`] if the code does not return.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
     /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. Each
@@ -30,7 +30,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if the code of the work does not return.
+    /// Returns [`Fault::Processor`] if the code of the work does not return.
     pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.spend(span).await;
@@ -66,7 +66,7 @@ impl Gp {
     ///
     /// # Errors
     ///
-    /// [`Fault::Processor`] if the data do not fit.
+    /// Returns [`Fault::Processor`] if the data do not fit.
     pub fn install(&self, image: impl FnOnce(&mut Processor) -> Result<(), ProcessorFault>) -> Result<(), Fault> {
         let shared = &mut *self.shared.borrow_mut();
         Ok(shared.processor.as_deref_mut().map_or(Ok(()), image)?)

@@ -325,7 +325,7 @@ fn interrupted() -> Rig {
 }
 
 #[test]
-fn who_looks_sees_work_that_is_left_and_what_waits() {
+fn a_snapshot_shows_the_remaining_work_and_the_waiting_messages() {
     let mut rig = interrupted();
     let program = |priority, waits_for, left_ns: Option<u64>| ProgramSnapshot {
         priority,
@@ -361,7 +361,7 @@ fn who_looks_sees_work_that_is_left_and_what_waits() {
 }
 
 #[test]
-fn who_looks_sees_each_account_of_the_memory() {
+fn a_snapshot_shows_each_account_of_the_memory() {
     let mut rig = Rig::new().with(Priority::Foreground, |gp| async move {
         for (bytes, account) in (1..).zip(Account::ALL) {
             gp.reserve(account, bytes, None)?;

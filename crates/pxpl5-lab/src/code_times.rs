@@ -31,8 +31,8 @@
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
 //! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats
-//! the messages are those of display fields. The result is the mean over the three scenes. `token entry` is the slope
-//! of the time to send a bin over the number of entries in the bin, by least squares over all bins.
+//! the messages are those of display fields. The result is the mean over the three scenes. `token entry` is the
+//! additional time to send a bin for each entry in the bin. It is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;

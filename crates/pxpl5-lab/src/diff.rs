@@ -70,6 +70,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
         flatten(String::new(), report, &mut leaves);
         leaves
     });
+    // A key of only one report counts as different.
     let keys: BTreeSet<&String> = of_a.keys().chain(of_b.keys()).collect();
     let mut all = Differences {
         same_trace: a["trace_hash"].is_string() && a["trace_hash"] == b["trace_hash"],
@@ -82,6 +83,7 @@ pub fn diff(a: &Value, b: &Value) -> Differences {
         if LEFT_OUT.contains(&first) {
             continue;
         }
+        // Settings are listed separately, because they are the cause of differing results.
         let is_setting = SETTINGS.contains(&first);
         let (a, b) = (of_a.get(key).copied(), of_b.get(key).copied());
         if a == b {

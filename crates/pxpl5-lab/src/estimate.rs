@@ -255,7 +255,8 @@ pub enum Study {
 /// CPU seconds of all figures. This value and the next ones are fitted to measurements with the build profile `dist` on
 /// one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of a frame of an application scene, and the part that each interpretation adds if events measure it.
+/// CPU seconds of one frame of an application scene. `READINGS_BEST` is the additional fraction for each interpretation
+/// that is simulated with events.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
 /// CPU seconds of the figures at all levels, of a random experiment at all levels, and of all speeds.

@@ -11,9 +11,9 @@
 //! vary within the range that reproduces the figure exactly. The interval of a fitted figure therefore shows the
 //! figure's error without a new fit.
 //!
-//! Some figures need a simulation with events. For these figures only two machine parameters vary, for which no source
-//! exists: the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the
-//! photodiode's position and the interpretations vary too.
+//! Some figures need a simulation with events. For these figures, only two machine parameters without a source vary:
+//! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
+//! position and the interpretations vary too.
 
 use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use pxpl5_machine::MachineConfig;
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn the_figure_of_the_scenes_has_no_interval_and_is_not_judged_by_one() {
+    fn the_figure_of_the_scenes_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
         let mut rows = [FigureRow::new(figure, FigureValue::from(9.0))];
         fill(&mut rows, &[]);

@@ -19,7 +19,7 @@
 //! | the files of a folder that belong to one run | [`manifest`] |
 //! | experiments in text files, and saved runs that can be continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
-//! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its analytic model, if there is
+//! [`registry`] lists the built-in pipelines and displays. A pipeline's entry contains its closed form, if there is
 //! one. An experiment file may use another registry.
 
 #![warn(missing_docs)]
@@ -60,7 +60,7 @@ pub use what_if::{WhatIf, what_if};
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};
 
-/// Returns the registry of the built-in pipelines and displays. Some pipelines have an analytic model (closed form).
+/// Returns the registry of the built-in pipelines and displays. Some pipelines have a closed form.
 #[must_use]
 pub fn registry() -> Arc<Registry> {
     static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {

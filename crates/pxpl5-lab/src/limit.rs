@@ -8,9 +8,9 @@
 //!   Hints --near: bracket, bisect--> first miss --sizes below it, doubtful sizes--> least size that misses
 //! ```
 //!
-//! A larger scene can reach a goal that a smaller scene misses, because a nearly empty clump (group of triangles) costs
-//! as many messages as a full one. The search therefore also tries sizes below the result of the bisection, and the
-//! smallest miss counts. [`most`] states the guarantee.
+//! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
+//! triangles) costs as many messages as a full one. The search therefore also tries sizes below the result of the
+//! bisection, and the smallest miss counts. [`most`] states the guarantee.
 
 mod over;
 mod search;
@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
-    /// Registry that contains the pipeline's analytic model.
+    /// Registry that contains the pipeline's closed form.
     pub registry: Arc<Registry>,
     /// Machine on which the pipeline runs.
     pub config: MachineConfig,
@@ -45,7 +45,7 @@ pub struct LimitQuery {
     pub level: Level,
 }
 
-/// A model that is thinned out evenly to each number of triangles. The search stops at the model's own number.
+/// A model that is decimated evenly to each number of triangles. The search stops at the model's own number.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Settings of the model's scene. The number of triangles in these settings is ignored.
@@ -152,8 +152,8 @@ impl LimitQuery {
         }
         let (shown, fields) = (outcome.shown(), self.criterion.fields);
         Err(ExperimentError::Scene(format!(
-            "goal: expected a scene whose updates have a rate, to reach {hz} Hz; found one that is drawn and stays right (updates in \
-             {fields} fields: {shown}, fewer than two of them behind start-up)"
+            "goal: expected a scene with a rate of updates, to reach {hz} Hz; found a scene that is drawn once and stays right \
+             (updates in {fields} fields: {shown}, fewer than two of them after the warm-up)"
         )))
     }
 
@@ -169,8 +169,8 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// A model would have to be thinned out and viewed for each size, which takes as long at the analytic level as at
-    /// any other level. Small triangles therefore stand in for the model.
+    /// For a model, each size needs a decimated scene and its views. This takes as long at the analytic level as at any
+    /// other level. Small triangles therefore stand in for the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();

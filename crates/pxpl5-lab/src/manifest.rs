@@ -112,7 +112,9 @@ impl Manifest {
             }
             Err(error) => return Err(ManifestError::Io { path: found, reason: error.to_string() }),
             // Reading a pipe would block.
-            Ok(there) if !there.is_file() => return Err(no_manifest("something else than a file".to_owned())),
+            Ok(there) if !there.is_file() => {
+                return Err(no_manifest("something that is not a regular file".to_owned()));
+            }
             Ok(_) => {}
         }
         let bytes =
@@ -180,7 +182,7 @@ impl Manifest {
         if !path.is_file() {
             return Err(changed("no file"));
         }
-        let bytes = fs::read(&path).map_err(|_| changed("one that cannot be read"))?;
+        let bytes = fs::read(&path).map_err(|_| changed("a file that cannot be read"))?;
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 

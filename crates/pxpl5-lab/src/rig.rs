@@ -59,7 +59,7 @@ pub enum RigRunError {
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.
     #[error(
-        "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
+        "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
         /// Number of frames that were requested at low points.
@@ -68,7 +68,7 @@ pub enum RigRunError {
         found: usize,
     },
     /// The photodiode cannot tell when a frame of this pipeline appears.
-    #[error("expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}")]
+    #[error("expected a pipeline whose frames a photodiode can distinguish, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.
         pipeline: &'static str,
@@ -200,6 +200,7 @@ fn lamp() -> Scene {
         hinge: None,
         culls_back_faces: false,
     };
+    // Full ambient light makes the wall white from every direction, and the background stays black.
     let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
     Scene::new(SceneParts {

@@ -1,11 +1,11 @@
 //! Saves and restores a run at the boundary between two display fields.
 //!
-//! A snapshot is a **replay snapshot**. It does not hold the state of the boards, because their programs are suspended
-//! `async` functions, whose state cannot be serialized. Instead, the snapshot holds the data that determine this state:
-//! the experiment, the identity of the scene, and the field. It also holds the trace hash and the number of events,
-//! which identify the state.
+//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. It does not hold the state of the boards, because
+//! their programs are suspended `async` functions, whose state cannot be serialized. Instead, the checkpoint holds the
+//! data that determine this state: the experiment, the identity of the scene, and the field. It also holds the trace hash
+//! and the number of events, which identify the state.
 //!
-//! To restore a snapshot, the program repeats the run up to the saved field without computing pixels. It then compares
+//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. It then compares
 //! the hash and number of events with the saved ones, and continues the run. A restored run is therefore identical to
 //! the original run. Restoring takes as long as the original simulation up to that field (thousands of fields a second
 //! for small scenes).
@@ -57,7 +57,7 @@ pub struct Snapshot {
 #[non_exhaustive]
 pub enum SnapshotError {
     /// The file is not a snapshot.
-    #[error("{file}: this is no snapshot: {reason}")]
+    #[error("{file}: this is not a checkpoint: {reason}")]
     Foreign {
         /// Name of the file, as given by the user.
         file: String,
@@ -65,7 +65,9 @@ pub enum SnapshotError {
         reason: String,
     },
     /// The snapshot has a layout of another version.
-    #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
+    #[error(
+        "{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it"
+    )]
     Version {
         /// Name of the file, as given by the user.
         file: String,
@@ -75,7 +77,7 @@ pub enum SnapshotError {
         found: String,
     },
     /// The snapshot was changed after it was written.
-    #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
+    #[error("{file}: the checkpoint is damaged: expected checksum {expected}, found {found}")]
     Damaged {
         /// Name of the file, as given by the user.
         file: String,
@@ -94,7 +96,7 @@ pub enum SnapshotError {
     },
     /// The repeated run differs from the saved run.
     #[error(
-        "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
+        "{file}: the repeated run differs from the saved run (version {version}): {what}: expected {expected}, found {found}"
     )]
     Differs {
         /// Name of the file, as given by the user.
@@ -266,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_repeated_from_its_snapshot_is_the_same_at_the_field_and_at_the_end() {
+    fn a_run_repeated_from_its_checkpoint_is_equal_at_the_field_and_at_the_end() {
         let (plan, snapshot, end) = saved();
         let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
         let restored = snapshot.experiment("s").and_then(|file| {

@@ -66,14 +66,15 @@ impl Knob {
 
 /// Returns the effect of 10 % more of each resource.
 ///
-/// If the head is not tracked and the pipeline has an analytic model (closed form), this model gives the effects.
-/// Otherwise the experiment runs again for each resource, without pixels.
+/// If the head is not tracked and the pipeline has a closed form, the closed form gives the effects. Otherwise the
+/// experiment runs again for each resource, without pixels.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiment::run`] for the unchanged experiment. A changed experiment that cannot run
 /// has no results.
 pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatIf>, ExperimentError> {
+    // Try the analytic level first, because it takes almost no time.
     let by_form = experiment.clone().level(Level::Analytic).pixels(Pixels::Off);
     let is_analytic = experiment.tracked_head().is_none();
     let form = is_analytic.then(|| summarise(registry, &by_form).ok()).flatten();
@@ -89,6 +90,7 @@ pub fn what_if(registry: &Registry, experiment: &Experiment) -> Result<Vec<WhatI
         let latency = summary.map(|summary| summary.latency_ms().mean).filter(|mean| mean.is_finite());
         (latency, summary.and_then(|summary| summary.updates_hz))
     };
+    // Change one resource at a time. All other settings stay the same.
     let tell = |knob: &Knob| {
         let (from, to, machine) = knob.more(tried.config())?;
         let changed = summarise(registry, &tried.clone().with_machine(machine)).ok();

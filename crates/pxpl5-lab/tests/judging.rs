@@ -115,7 +115,7 @@ fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
 }
 
 #[test]
-fn what_moves_with_the_head_is_judged_as_a_point_behind_it_would_be() {
+fn objects_fixed_to_the_head_are_evaluated_like_a_point_behind_them() {
     let scene = pxpl5_scene::builtin("full-screen:4").expect("built in");
     let outcome = run(scene, head(Slide::right_at(0.5))).expect("it runs");
     assert!(PixelErrors::of(&outcome).pixels.mean > 0.1);

@@ -151,7 +151,7 @@ fn the_kernels_poll_delays_the_fastrak_too() {
 }
 
 #[test]
-fn a_number_of_a_tracker_that_nobody_could_have_is_refused_with_what_was_expected() {
+fn an_impossible_tracker_parameter_is_refused_with_the_expected_range() {
     for (settings, says) in [
         (
             &["head.motion=still", "tracking.optical.rate=0"][..],

@@ -95,7 +95,7 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
     let in_window = shown.filter(|field| (due.first_period..=due.last_period).contains(field)).count() as u64;
     assert_eq!((due.shown, due.missed), (in_window, due.due - in_window));
     assert!(due.last_period.after(2).0 >= report.fields && due.shown > 0, "{due:?}");
-    assert_eq!(report.updates_hz, None, "a single picture behind start-up has no rate");
+    assert_eq!(report.updates_hz, None, "a single picture after the warm-up has no rate");
 }
 
 #[test]

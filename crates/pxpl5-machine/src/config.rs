@@ -339,7 +339,7 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Board`] if the machine has no display or the display's parameters are invalid.
+    /// Returns [`ConfigError::Board`] if the machine has no display or the display's parameters are invalid.
     pub fn period(&self) -> Result<Span, ConfigError> {
         let display = self.displays.first().ok_or_else(no_display)?;
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();

@@ -83,7 +83,7 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if a parameter of the machine or of a display is invalid.
+    /// Returns [`ConfigError`] if a parameter of the machine or of a display is invalid.
     pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, ConfigError> {
         config.check()?;
         // Number the ports first: every board needs its own port number.
@@ -249,8 +249,8 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// [`RunError`] if a program fails, the machine deadlocks or the ring refuses a message. The [`Record`] keeps all
-    /// earlier observations.
+    /// Returns [`RunError`] if a program fails, the machine deadlocks or the ring refuses a message. The [`Record`]
+    /// keeps all earlier observations.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
         while self.takes_event_before(end).is_some() {}
         self.failure.clone().map_or(Ok(()), Err)

@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_keep_their_numbers_when_those_before_are_given_up() {
+    fn frames_keep_their_numbers_when_earlier_frames_are_discarded() {
         let mut observation = stereo();
         let all = observation.frames(2);
         assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);

@@ -63,7 +63,7 @@ impl Record {
     ///
     /// # Panics
     ///
-    /// Never, because [`MachineConfig::check`] refuses a machine without a display.
+    /// Never panics, because [`MachineConfig::check`] refuses a machine without a display.
     #[must_use]
     pub fn display(&self) -> &dyn Display {
         self.displays[0].as_ref()

@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_given_up_leaves_the_state_that_it_led_to() {
+    fn discarded_records_leave_the_state_that_they_led_to() {
         let transfer = |end| Transfer {
             source: NodeId(1),
             destination: NodeId(2),
@@ -193,7 +193,7 @@ mod tests {
         }
 
         #[test]
-        fn nothing_that_is_known_from_an_instant_on_is_given_up(
+        fn no_record_from_an_instant_on_is_discarded(
             busy in proptest::collection::btree_map(0u64..40, 0u32..9, 1..20),
             changes in proptest::collection::vec((0usize..2, 0u64..40, -9i64..9), 0..20),
             ends in proptest::collection::vec(0u64..40, 0..9),

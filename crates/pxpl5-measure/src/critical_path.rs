@@ -91,6 +91,7 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     if span == Span::ZERO {
         return None;
     }
+    // Sum the time of each board, to name the board that causes most of the wait.
     let mut boards: BTreeMap<Board, Span> = BTreeMap::new();
     of().filter_map(|step| Some((step.board?, step.span()))).for_each(|(board, span)| {
         *boards.entry(board).or_default() += span;
@@ -105,7 +106,8 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is printed by name if it causes at least this share of the wait for a resource (a choice of the text alone).
+/// A board is printed by name if it causes at least this share of the wait for a resource. The value affects only the
+/// printed text.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {
@@ -127,6 +129,7 @@ impl fmt::Display for PathPart {
 fn links_text(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;
+    // A link is a sequence of steps with the same resource and board.
     for step in steps {
         let kind = (step.resource, step.board);
         match links.last_mut().filter(|_| last == Some(kind)) {

@@ -43,8 +43,8 @@ pub(crate) struct FacesSeen {
 }
 
 impl Drawn {
-    /// Returns the instant for which the pixel was drawn. For a shifted picture, the result is the instant when it is
-    /// lit.
+    /// Returns the instant for which the pixel was drawn. For a shifted picture, the result is the instant at which the
+    /// pixel is lit.
     pub(crate) fn instant(&self, light: Time) -> Time {
         match self {
             Self::View(moment) => moment.objects_at,

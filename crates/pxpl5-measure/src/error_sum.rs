@@ -104,12 +104,15 @@ impl Showing {
             Self::Plain | Self::Ideal | Self::DelayedVideo => return None,
         };
         let surface = display.surfaces().first()?;
+        // Ticks are whole picoseconds, so the rate is a mean over many periods.
         const PERIODS: u64 = 60_000;
         let seconds = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO).as_ms() * 1e-3;
         let periods_per_s = PERIODS as f64 / seconds;
         let (_, distance) = display.rows_lit(PeriodNumber::FIRST);
         let [columns, lines] = [surface.width, surface.height / distance];
+        // Strips follow each other in the direction of the scan.
         let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
+        // A global scan lights all pixels at once, so the device can use only one pose per period.
         let poses = match (setting.every, display.light().scan) {
             (_, Scan::Global) | (Every::Field, _) => 1,
             (Every::Strip, _) => along.div_ceil(Every::STRIP),
@@ -269,6 +272,7 @@ impl Evaluation {
         collected: &mut Collected,
     ) -> Option<Misregistration> {
         let display = run.record.display();
+        // Without a newest pose, the device shows nothing at this pixel.
         let Some(newest) = reprojector.newest(display, pixel.place) else {
             collected.errors.empty += 1;
             return None;
@@ -276,6 +280,7 @@ impl Evaluation {
         let by = reprojector.setting.by;
         let found = moved((&self.evaluator, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
         let Collected { errors, eye, .. } = collected;
+        // Only a device with depth knows that a pixel's content is hidden in the picture.
         if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
             eye.looked_at(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
         }
@@ -322,6 +327,7 @@ impl Evaluation {
         let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
+            // Find the place in the drawn picture that the pixel shows. It can lie beyond the edge of the picture.
             let from = match &self.content {
                 Content::AdvancedMotion(_, offset) => {
                     let Some(offset) = offset else { continue };

@@ -37,7 +37,7 @@ pub struct MemoryReport {
     pub updates_hz: Option<f64>,
     /// Mean number of display periods between consecutive updates. `None` if fewer than two updates were shown.
     pub period_frames: Option<f64>,
-    /// Number of updates shown in the whole run, including start-up.
+    /// Number of updates shown in the whole run, including the warm-up.
     pub updates: u64,
     /// Number of structures of the scene in the memory at its last update.
     pub segments: usize,
@@ -69,6 +69,7 @@ impl FacesReport {
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
         let timing = &display.config().timing;
+        // A display that lacks a counter has counted nothing.
         let counted = |name: &str| {
             let counters = outcome.record().display().counters();
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)

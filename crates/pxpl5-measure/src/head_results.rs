@@ -23,7 +23,7 @@ pub(crate) fn missing_results_warning(outcome: &Outcome) -> Option<String> {
     is_missing.then(|| MISSING_RESULTS.to_owned())
 }
 
-const MISSING_RESULTS: &str = "latencies from the head to light and errors in pixels cover the last pictures alone: the run discarded its records and had no \
+const MISSING_RESULTS: &str = "latencies from the head to light and errors in pixels cover only the last pictures: the run discarded its records and had no \
     streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
 
 impl PixelErrors {

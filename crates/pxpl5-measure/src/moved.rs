@@ -38,6 +38,8 @@ pub(crate) fn moved(
     at: Time,
 ) -> Moved {
     let target = middle(place[0], place[1]);
+    // The region that contains the source determines the pose, and the pose determines the source. Search for a source
+    // that lies in its own region.
     let mut pixel = place;
     let mut last = Moved::Beyond;
     for _ in 0..STEPS {

@@ -60,14 +60,17 @@ impl<'a> PictureMover<'a> {
     ) {
         let display = self.run.record.display();
         let rows = display.rows_lit(field);
+        // All pixels of the range have one pose, so the middle pixel represents them.
         let x = xs.start.midpoint(xs.end - 1);
         let lit = display.lights(0, x, y, field);
         let drawn = lit.and_then(|at| self.shown.drawn(&self.run, [x, y], field, at));
+        // Without a drawn picture or a pose, the pixels stay where they are.
         let (Some(drawn), Some(newest)) = (drawn, reprojector.newest(display, [xs.start, y])) else {
             xs.for_each(|x| out.put_pixel(x, y, *screen.get_pixel(x, y)));
             return;
         };
         let moment = self.evaluator.moment(&drawn);
+        // With depth, each pixel has its own displacement.
         if self.setting.by == Warp::Depth {
             let from = |x| match self.evaluator.warped(&moment, &newest.pose, middle(x, y)) {
                 Warped::Seen(_, from) => Some(from),

@@ -45,13 +45,14 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
     Quantity { name, definition, value: Value::OfRun(value) }
 }
 
-const LATENCY: &str = "latency as the pipeline defines it (see the report), over all complete pictures in the window";
+const LATENCY: &str =
+    "latency by the definition of the pipeline (see the report), over all complete pictures in the window";
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
-const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of the swap included";
+const EYE_RETRACES: &str = "number of retraces from the start of an eye's TRANSFORM to the swap of its frame, the retrace of the swap included";
 
-const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in time; only with a head.motion";
+const ERROR_PX: &str = "distance between a pixel and the right place of its content when the pixel lights, over a grid of pixels and all fields of the window; only pixels of pictures that were complete in time; only with a head.motion";
 
 const PATH: &str = "share of the latency that waits for this resource, 0 to 1, over the last complete pictures of the window; the shares of all resources add up to 1";
 
@@ -70,26 +71,28 @@ pub static QUANTITIES: [Quantity; 55] = [
     of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().told().mean),
     of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().told().sd),
     // NaN counts as no value: see `Measure::of`.
-    of_summary("updates_hz", "whole pictures shown a second, over the window; none where fewer than two were", |s| {
-        s.updates_hz.unwrap_or(f64::NAN)
-    }),
+    of_summary(
+        "updates_hz",
+        "complete pictures shown per second, over the window; none if fewer than two were shown",
+        |s| s.updates_hz.unwrap_or(f64::NAN),
+    ),
     of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
         of_due(s, DuePictures::not_shown)
     }),
-    of_summary("missed_share", "missed_retraces over pictures_due, 0 to 1", |s| {
+    of_summary("missed_share", "missed_retraces divided by pictures_due, 0 to 1", |s| {
         s.due.map_or(f64::NAN, |due| due.not_shown_share())
     }),
-    of_summary("pictures_due", "pictures due in the window (see the report); none of frameless rendering", |s| {
+    of_summary("pictures_due", "pictures due in the window (see the report); none for frameless rendering", |s| {
         of_due(s, |due| due.due)
     }),
-    of_summary("pictures_shown", "those of them that were whole and in time", |s| of_due(s, |due| due.shown)),
-    of_summary("pictures_late", "those that were whole before their period ended, but not in time", |s| {
+    of_summary("pictures_shown", "due pictures that were complete in time", |s| of_due(s, |due| due.shown)),
+    of_summary("pictures_late", "due pictures that were complete before their period ended, but not in time", |s| {
         of_due(s, |due| due.late)
     }),
-    of_summary("pictures_incomplete", "those that were begun and not whole when their period ended", |s| {
+    of_summary("pictures_incomplete", "due pictures that were begun, and not complete when their period ended", |s| {
         of_due(s, |due| due.incomplete)
     }),
-    of_summary("pictures_missed", "those that were never begun, or left out", |s| of_due(s, |due| due.missed)),
+    of_summary("pictures_missed", "due pictures that were never begun, or left out", |s| of_due(s, |due| due.missed)),
     of_summary("region_copy_us", "mean port time of a region of 15,360 pixels", |s| s.region_copy_us),
     of_summary(
         "first_copy_ms",
@@ -98,10 +101,10 @@ pub static QUANTITIES: [Quantity; 55] = [
     ),
     of_summary(
         "last_copy_ms",
-        "first to last word of the COPY of the right eye, or of the bottom regions; mean; 0 where there is none",
+        "first to last word of the COPY of the right eye, or of the bottom regions; mean; 0 without a second copy",
         |s| s.last_copy_ms,
     ),
-    of_summary("copies_ms", "first_copy_ms and last_copy_ms together", |s| s.first_copy_ms + s.last_copy_ms),
+    of_summary("copies_ms", "sum of first_copy_ms and last_copy_ms", |s| s.first_copy_ms + s.last_copy_ms),
     of_summary("copy_begins_ms", "from the start of a picture to the first word of its first copy; mean", |s| {
         s.copy_begins_ms
     }),
@@ -121,21 +124,21 @@ pub static QUANTITIES: [Quantity; 55] = [
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
     of_run(
         "rotation_ms",
-        "from the measurement of an orientation to the light of the picture's middle; mean; only of a display with faces around the head",
+        "from the measurement of an orientation to the light of the picture's middle; mean; only for a display with faces around the head",
         |_, r| Some(r.arp.as_ref()?.rotation_latency_ms?.mean),
     ),
-    of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
+    of_run("late_regions", "regions that arrived after their deadline", |_, r| Some(r.late_regions as f64)),
     of_run(
         "lines_never_shown",
-        "lines of regions that were overwritten before the display had shown them; none of a display that shows whole buffers",
+        "lines of regions that were overwritten before the display had shown them; none for a display that shows whole buffers",
         |_, r| r.lines_never_shown().map(|lines| lines as f64),
     ),
     of_run("pictures", "complete pictures in the window", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
-    of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
+    of_run("transform_ms", "mean time of TRANSFORM, per eye or per picture, depending on the pipeline", |o, _| {
         stage_ms(o, Stage::Transform)
     }),
-    of_run("render_ms", "mean time of RENDER, an eye or a picture as the pipeline takes them", |o, _| {
+    of_run("render_ms", "mean time of RENDER, per eye or per picture, depending on the pipeline", |o, _| {
         stage_ms(o, Stage::Render)
     }),
     of_run(
@@ -143,15 +146,17 @@ pub static QUANTITIES: [Quantity; 55] = [
         "share of the run in which the CPUs of graphics processors were busy, mean over all, 0 to 1",
         |_, r| Some(r.utilisation.as_ref()?.gps.busy.mean),
     ),
-    of_run("gp_busy.max", "the same of the busiest graphics processor", |_, r| {
-        Some(r.utilisation.as_ref()?.gps.busy.max)
-    }),
+    of_run(
+        "gp_busy.max",
+        "share of the run in which the CPU of the busiest graphics processor was busy, 0 to 1",
+        |_, r| Some(r.utilisation.as_ref()?.gps.busy.max),
+    ),
     of_run(
         "renderer_busy.mean",
         "share of the run in which renderers executed commands, mean over all, 0 to 1",
         |_, r| Some(r.utilisation.as_ref()?.renderers.executing.mean),
     ),
-    of_run("renderer_busy.max", "the same of the busiest renderer", |_, r| {
+    of_run("renderer_busy.max", "share of the run in which the busiest renderer executed commands, 0 to 1", |_, r| {
         Some(r.utilisation.as_ref()?.renderers.executing.max)
     }),
     of_run(
@@ -236,7 +241,7 @@ impl Results {
         Self { summary: summary(&outcome), run: Some((outcome, report)) }
     }
 
-    /// Returns the results of an analytic model, without a simulated run.
+    /// Returns the results of a closed form, without a simulated run.
     #[must_use]
     pub const fn of_closed_form(summary: Summary) -> Self {
         Self { summary, run: None }

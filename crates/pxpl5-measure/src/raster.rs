@@ -64,8 +64,8 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The corrections that a display applies to the pictures of a run: a raster offset for every field, or a device that
-/// moves pictures to the newest pose.
+/// The corrections that a display applies to the pictures of a run. They are a raster offset for every field, or a
+/// device that moves pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
@@ -98,6 +98,7 @@ impl<'a> RasterOffsets<'a> {
             }
             Raster::Vdrt => {}
         }
+        // VDRT computes the offset of each field from the pose for which its picture was drawn.
         let shown = Shown::of_run(&run, head);
         let mut vdrt = Vdrt::new(Estimator::new(head, None), display);
         let offsets = PeriodNumber::FIRST.until(run.until).map(|field| {

@@ -1,5 +1,4 @@
-//! Registration error: distance between a pixel and the correct position of its content at the time when the pixel is
-//! lit.
+//! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
 
 use crate::content::{Content, Contents};
 use crate::reproject::direction;
@@ -12,7 +11,7 @@ use std::sync::Arc;
 use tracking::Pose;
 use tracking::view::{HmdView, Misregistration, dual_list};
 
-/// Computes registration errors by casting rays and projecting the hit points.
+/// Computes pixel errors by casting rays and projecting the hit points.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
     pub(crate) view: HmdView,
@@ -189,7 +188,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Computes the registration error of single pixels of a run.
+/// Computes the pixel error of single pixels of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: FinalResults<'a>,

@@ -78,7 +78,7 @@ pub struct Report {
     ///
     /// Empty if the eyes share one TRANSFORM.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
-    /// Number of complete pictures shown in the whole run, including start-up.
+    /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
     /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
     pub updates_hz: Option<f64>,
@@ -128,7 +128,7 @@ pub struct Report {
     pub host_seconds: Option<f64>,
 }
 
-/// Results that concern the head: tracker, prediction, latency until pixels are lit, and registration error.
+/// Results that concern the head: tracker, prediction, latency until pixels are lit, and pixel error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeadReport {
     /// Name of the tracker that reported the head's pose.
@@ -150,7 +150,7 @@ pub struct HeadReport {
     pub display: Raster,
     /// Latency from the measurement of the head's pose until the picture is lit, by stage, in milliseconds.
     pub end_to_end: Budget,
-    /// Registration error of the displayed pixels.
+    /// Pixel error of the displayed pixels.
     pub error: PixelErrors,
 }
 

@@ -85,6 +85,7 @@ fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> O
     let surface = display.surfaces().first()?;
     let size = [surface.width, surface.height];
     let scan = display.light().scan;
+    // First and last line of the part, counted in the direction of the scan.
     let [from, to] = match every {
         Every::Strip if scan != Scan::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
         Every::Line if scan != Scan::Global => [part; 2],
@@ -94,6 +95,7 @@ fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> O
     let whole = [0, u32::MAX];
     let [xs, ys] = if sideways { [[from, to], whole] } else { [whole, [from, to]] };
     let (first_row, distance) = display.rows_lit(field);
+    // A scan lights pixels monotonically, so the corners of the part have the first and the last light.
     let corners = xs.into_iter().flat_map(|x| ys.into_iter().map(move |y| [x.min(size[0] - 1), y.min(size[1] - 1)]));
     let lights = corners.filter_map(|[x, y]| display.lights(0, x, y / distance * distance + first_row, field));
     let all: Vec<Time> = lights.collect();

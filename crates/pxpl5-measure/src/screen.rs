@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_covered_is_forgotten_and_nothing_else() {
+    fn covered_regions_are_discarded_and_no_others() {
         let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
         let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
         for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {

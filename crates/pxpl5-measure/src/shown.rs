@@ -30,8 +30,8 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during
-    /// start-up.
+    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during the
+    /// warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures added so far.
     pictures: usize,
@@ -78,7 +78,7 @@ impl Shown {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
         let display = run.record.display();
-        // Pictures of start-up are complete without a period, so they are never evaluated.
+        // Pictures of the warm-up are complete without a period, so they are never evaluated.
         for times in run.pictures {
             self.pictures += 1;
             let is_start_up = self.pictures <= WARM_UP_PICTURES;

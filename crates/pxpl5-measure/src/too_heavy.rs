@@ -14,9 +14,9 @@ pub struct TooHeavy {
     pub not_shown: u64,
     /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// Number of the scene's first primitives that the pipeline would show in time, computed by its analytic model.
+    /// Number of the scene's first primitives that the pipeline would show in time, computed by its closed form.
     ///
-    /// `None` if the pipeline has no analytic model, or if the model predicts that the whole scene is in time.
+    /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
     /// Advice to the user: a number of triangles to try, or a command that finds one.
     pub advice: String,
@@ -37,10 +37,15 @@ impl TooHeavy {
 }
 
 fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
-    let search = format!("`pxpl5 limit --pipeline {pipeline}` finds how many test triangles it draws in time");
+    let search =
+        format!("`pxpl5 limit --pipeline {pipeline}` finds the number of test triangles that it draws in time");
     match triangles_in_time {
-        Some(0) => format!("by the closed form not even one triangle of this scene would be in time; {search}"),
-        Some(some) => format!("by the closed form about {some} would do (--triangles {some})"),
+        Some(0) => {
+            format!("the analytic level predicts that not even one triangle of this scene would be in time; {search}")
+        }
+        Some(some) => {
+            format!("the analytic level predicts that about {some} triangles would be in time (--triangles {some})")
+        }
         None => search,
     }
 }

@@ -42,7 +42,7 @@ struct StageWork {
 const NEAR: Span = Span::from_us(20);
 
 /// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
-/// Without this rule, near ties between the port and a token count for the token.
+/// Without this rule, the token would count as the cause whenever port and token become free at nearly the same time.
 const SLACK: u64 = 4;
 
 /// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
@@ -118,6 +118,7 @@ impl<'a> Trail<'a> {
         arrivals.sort_by_key(|arrival| arrival.last_part_at);
         let drawn: Vec<(usize, DrawnRegion)> =
             observation.drawn.iter().filter(|(_, region)| region.copy_at >= earliest).copied().collect();
+        // Index the drawn regions by destination and by renderer, because the search follows both.
         let mut of_target: HashMap<CopyTarget, Vec<usize>> = HashMap::with_capacity(drawn.len());
         let mut of_renderer: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (place, (renderer, region)) in drawn.iter().enumerate() {
@@ -188,6 +189,7 @@ impl<'a> Trail<'a> {
     pub(crate) fn follow(&self, times: &PictureTimes) -> Vec<Step> {
         let mut way = Way { steps: Vec::new(), cursor: times.shown_at, floor: times.transform_at };
         let of_picture = |arrival: &&Arrival| arrival.target.picture == times.picture;
+        // The chain starts at the last region of the picture that arrived before the picture was shown.
         let last = self.arrivals[..self.arrivals_by(times.shown_at)].iter().rposition(of_picture);
         let mut at = match last {
             Some(last) => {
@@ -197,6 +199,7 @@ impl<'a> Trail<'a> {
             None => At::Begin,
         };
         let mut steps = 0;
+        // Each step moves the cursor back in time to the end of the work that was waited for.
         while !way.is_over() && !matches!(at, At::Begin) && steps < MOST_STEPS {
             at = match at {
                 At::Arrival(place) => self.before_arrival(&mut way, place),
@@ -287,6 +290,7 @@ impl<'a> Trail<'a> {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
         let timing = self.record.ring().timing();
+        // The minimum time is that of whole messages and of one shorter message, without waits between them.
         let needed = drawn.map_or(way.cursor.since(begin.min(way.cursor)), |drawn| {
             let words = self.drawn[drawn].1.words;
             let whole = timing.occupancy(pxpl5_wire::MAX_MESSAGE_WORDS);
@@ -298,6 +302,7 @@ impl<'a> Trail<'a> {
         let region = arrival.target.region.0;
         let moved = Time(way.cursor.0.saturating_sub(needed.0)).max(begin);
         way.charge(Resource::Ports, board, moved, || format!("COPY of region {region} to the {title}"));
+        // A remainder of a few cycles comes from signals, so it belongs to the port.
         if way.cursor.since(begin.min(way.cursor)) <= NEAR {
             way.charge(Resource::Ports, board, begin, || format!("COPY of region {region} to the {title}"));
         } else {
@@ -320,7 +325,7 @@ impl<'a> Trail<'a> {
 
     /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
     ///
-    /// This work is the previous region on the same renderer, or the start of RENDER.
+    /// The returned work is the previous region on the same renderer, or the start of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let board = Some(Board::Renderer(renderer));

@@ -112,6 +112,7 @@ impl Utilisation {
         let (host, gps) = record.processors_used().split_first()?;
         let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);
         let renderers = record.renderers();
+        // A renderer executes, copies or waits. The share of waiting is the remainder.
         let executing = Shares::of(renderers.iter().map(|board| board.busy_at(time)), time)?;
         let copying = mean(&mut renderers.iter().map(|board| board.copying_at(time)));
         let timing = record.ring().timing();

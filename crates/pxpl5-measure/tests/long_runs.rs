@@ -114,7 +114,7 @@ fn assert_same(experiment: &Experiment) {
 }
 
 #[test]
-fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
+fn discarding_records_changes_no_result_of_a_head() {
     experiments().par_iter().for_each(assert_same);
 }
 
@@ -122,7 +122,7 @@ fn what_is_kept_changes_nothing_that_is_said_of_a_head() {
 ///
 /// The first one lasts eighteen seconds after the tracker's last report.
 #[test]
-fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
+fn discarding_records_changes_no_result_of_a_head_in_shorter_runs() {
     let [slats, _, _, _, control, .., faces, _, _] = &experiments()[..] else { panic!("fourteen") };
     let silent = slats.clone().head(head(synthetic(), silent(4.0, 22.0), PredictorKind::ConstantVelocity));
     for (experiment, fields) in [(&silent, 1_500), (control, 600), (faces, 1_000)] {
@@ -131,10 +131,11 @@ fn what_is_kept_changes_nothing_that_is_said_of_a_head_in_shorter_runs() {
 }
 
 #[test]
-fn of_records_that_nobody_summed_up_a_report_says_that_they_are_gone() {
+fn a_report_warns_of_discarded_records_without_a_streaming_observer() {
     let experiment = experiments().swap_remove(0);
     let silent = run(&experiment.clone().observed_by(None), Keep::Statistics).report();
-    let said: Vec<&String> = silent.warnings.iter().filter(|warning| warning.contains("last pictures alone")).collect();
+    let said: Vec<&String> =
+        silent.warnings.iter().filter(|warning| warning.contains("cover only the last pictures")).collect();
     assert_eq!(said.len(), 1, "{:?}", silent.warnings);
     for keep in [Keep::Everything, Keep::Statistics] {
         assert_eq!(run(&experiment, keep).report().warnings, experiment.warnings(), "{keep:?}");

@@ -186,7 +186,7 @@ fn the_hash_of_a_report_is_of_what_happened_and_of_what_is_said_of_it() {
     assert_ne!(report.trace_hash, outcome.record().trace_hash().to_string());
 }
 
-/// In six fields, not all of four memories have been drawn, and none after start-up.
+/// In six fields, not all of four memories have been drawn, and none after the warm-up.
 #[test]
 fn a_memory_without_two_updates_in_the_window_has_neither_rate_nor_period() {
     let pipeline =

@@ -48,9 +48,9 @@ impl Motion {
     /// Reads a recorded motion from a file in the project's own format, or in the format of EuRoC or TUM. The contents
     /// of the file determine the format. With ``columns``, any table can be read.
     ///
-    /// ``columns`` maps the quantities of a sample to columns by name or number: ``t``, ``t_ms``, ``t_us`` or ``t_ns``;
-    /// ``x``, ``y``, ``z`` or ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``. ``end`` is the behaviour after the last
-    /// sample: ``hold``, ``loop``, or None if no run may continue after it.
+    /// ``columns`` maps the quantities of a sample to columns by name or number. The quantities are ``t``, ``t_ms``,
+    /// ``t_us`` or ``t_ns``; ``x``, ``y``, ``z`` or ``x_mm`` ..; and ``qw``, ``qx``, ``qy``, ``qz``. ``end`` is the
+    /// behaviour after the last sample: ``hold``, ``loop``, or None if no run may continue after it.
     ///
     /// Raises :class:`pxpl5.SettingError` with line, column, and the expected and the found text.
     #[staticmethod]

@@ -267,6 +267,7 @@ fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'
     let any = column.as_any();
     let value = match column.data_type() {
         DataType::Int64 => any.downcast_ref::<Int64Array>().map(|values| Value::from(values.value(row))),
+        // A float may be NaN, which JSON values cannot hold, so it is converted directly.
         DataType::Float64 => {
             return any
                 .downcast_ref::<Float64Array>()

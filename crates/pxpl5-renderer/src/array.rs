@@ -36,13 +36,13 @@ pub trait PixelArray {
     /// Returns bit number `bit` (0 to 207) of all pixels.
     ///
     /// # Panics
-    /// If `bit` is 208 or more.
+    /// Panics if `bit` is 208 or more.
     fn plane(&self, bit: usize) -> Plane;
 
     /// Overwrites bit number `bit` (0 to 207) of all pixels.
     ///
     /// # Panics
-    /// If `bit` is 208 or more.
+    /// Panics if `bit` is 208 or more.
     fn set_plane(&mut self, bit: usize, plane: &Plane);
 
     /// Returns the Enable register of all pixels.

@@ -69,8 +69,8 @@ impl BitSerial {
 
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// Disabled pixels move no planes. If the corners of a tile determine a sign, the adders do not run. Clocks, faults
-    /// and all bits stay the same. The default mode takes ten times as long.
+    /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
+    /// adders do not run. Clocks, faults and all bits stay the same. The default mode takes ten times as long.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

@@ -123,7 +123,7 @@ impl CommandKind {
     /// Returns the number of clocks for which the command's program keeps the array busy.
     ///
     /// # Errors
-    /// [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
@@ -198,7 +198,7 @@ impl Command {
     /// Returns the command's program of array instructions.
     ///
     /// # Errors
-    /// [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, Unsupported> {
         let program = match self {
             Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
@@ -223,7 +223,7 @@ impl Command {
     /// Appends the words of the command's [program](Command::program) to `out`.
     ///
     /// # Errors
-    /// [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
         match self {
             Self::SelectRegion(command) => encode_all(&command.program(layout), out),
@@ -237,7 +237,8 @@ impl Command {
     /// Decodes the command that begins at word `position`. Returns the command and its length in words.
     ///
     /// # Errors
-    /// [`DecodeError`] if the words encode no instructions, or if they are not the program of a command in this layout.
+    /// Returns [`DecodeError`] if the words encode no instructions, or if they are not the program of a command in this
+    /// layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = ArrayInstruction::decode(words, position)?;
         // The label of the first instruction gives the kind, and the kind gives the number of words.

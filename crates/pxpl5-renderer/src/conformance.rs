@@ -174,6 +174,7 @@ const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
 
 fn corner_expressions() -> Vec<ArrayInstruction> {
     let mut out = Vec::new();
+    // Combine each extreme value with two others, so that every coefficient takes every value.
     for (i, a) in EXTREMES.into_iter().enumerate() {
         let b = EXTREMES[(i + 1) % 6];
         let c = EXTREMES[(i + 3) % 6];

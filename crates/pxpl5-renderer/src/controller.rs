@@ -108,7 +108,7 @@ impl Controller {
     /// Returns the bits of pixel memory that an operand means in the selected context.
     ///
     /// # Errors
-    /// [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
+    /// Returns [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
     pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
         let bits = FieldBits {
@@ -189,7 +189,7 @@ const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
 }
 
 impl LocalExpression {
-    /// Returns the expression's value at a column and row. The value has 32 or 48 bits and is extended by its sign.
+    /// Returns the expression's value at a column and row. The value has 32 or 48 bits and is sign-extended.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {
             Self::Linear(e) => i64::from(e.at(x, y)),

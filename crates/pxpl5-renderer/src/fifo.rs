@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word for which the first command makes room in the FIFO when the command starts. Words are
-    /// counted from 0 since the start of the run.
+    /// Index of the first word that fits into the FIFO when the first of these commands starts. Words are counted from
+    /// 0 since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -55,7 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index of the last of these commands whose start frees room for `word` or for an earlier word.
+    /// Returns the index of the command whose start frees the room for `word`. If `word` lies beyond the room of all
+    /// these commands, returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -139,8 +140,9 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Greatest execution time of the commands that select a region for a copy. After a wait, commands with a longer
-/// execution time count as commands that draw the region. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Limit between two kinds of commands at the start of a list. If the controller has waited, a command up to this
+/// length can be the selection of the region to copy. A longer command draws the region. A selection takes 6 clocks of
+/// 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command and of the commands before it.
@@ -478,11 +480,13 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
+                    // A word enters when the word one FIFO depth before it has left.
                     let room =
                         if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;
                     self.held.push_back(Time(u64::MAX));
                 }
+                // A command starts when it is complete and the previous command has ended. All its words then leave.
                 let start = self.free_at.max(self.last_word_at);
                 let n = self.held.len();
                 self.held.iter_mut().skip(n - *words as usize).for_each(|left| *left = start);

@@ -9,8 +9,8 @@
 //! # Words
 //!
 //! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand names a *field* of pixel
-//! memory in 16 bits: bit 15 signed, bit 14 relative to the context's base, bits 13..8 width - 1, bits 7..0 the
-//! address of the least significant bit. Unused bits must be zero.
+//! memory in 16 bits. Bit 15: the field is signed. Bit 14: the address is relative to the context's base. Bits 13..8:
+//! width - 1. Bits 7..0: address of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|
@@ -48,8 +48,8 @@
 //! # Rules
 //!
 //! - Enable masks writes to pixel memory and sources of the backing store, unless the table says *every*.
-//! - Results are taken modulo 2^w. An operand narrower than the result is extended by its sign if its *signed* bit is
-//!   set, and by zeros otherwise. A comparison, minimum or maximum needs operands of equal signedness.
+//! - Results are taken modulo 2^w. An operand narrower than the result is sign-extended if its *signed* bit is set,
+//!   otherwise zero-extended. A comparison, minimum or maximum needs operands of equal signedness.
 //! - Linear expressions are evaluated modulo 2^32, quadratic ones modulo 2^48; both are two's complement.
 //! - Expressions hold absolute screen coordinates. The controller applies the region's origin.
 //! - An operand may overlap the destination only if both start at the same bit. Multiply, divide, square root and load
@@ -143,7 +143,7 @@ pub enum ExpressionUse {
         field: Operand,
         /// Number of low bits of the difference that are left out.
         shift: u8,
-        /// Field to subtract, extended by its sign if it is signed, otherwise by zeros.
+        /// Field to subtract, sign-extended if it is signed, otherwise zero-extended.
         subtrahend: Operand,
         /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
@@ -224,7 +224,7 @@ pub enum ArrayInstruction {
     ShiftRight {
         /// Field that receives the result.
         destination: Operand,
-        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
+        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
@@ -233,7 +233,7 @@ pub enum ArrayInstruction {
     ShiftLeft {
         /// Field that receives the result.
         destination: Operand,
-        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
+        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
@@ -242,7 +242,7 @@ pub enum ArrayInstruction {
     Saturate {
         /// Field that receives the result.
         destination: Operand,
-        /// Field to read, extended by its sign if it is signed, otherwise by zeros.
+        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
     },
     /// Computes destination := floor(sqrt(radicand)). The remainder replaces the radicand.
@@ -257,18 +257,18 @@ pub enum ArrayInstruction {
         op: ArithmeticOp,
         /// Field that receives the result.
         destination: Operand,
-        /// First operand, extended by its sign if it is signed, otherwise by zeros.
+        /// First operand, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand, extended by its sign if it is signed, otherwise by zeros.
+        /// Second operand, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares two fields, and disables the pixels for which the comparison is false.
     Compare {
         /// Comparison that must be true for a pixel to stay enabled.
         test: Test,
-        /// First operand, extended by its sign if it is signed, otherwise by zeros.
+        /// First operand, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand, extended by its sign if it is signed, otherwise by zeros.
+        /// Second operand, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares a field with a constant, and disables the pixels for which the comparison is false. The constant has
@@ -278,11 +278,11 @@ pub enum ArrayInstruction {
         test: Test,
         a: Operand,
         /// Constant. A field of less than 32 bits uses its low bits. For a field of more than 32 bits, the constant is
-        /// extended by its sign if the field is signed, otherwise by zeros.
+        /// sign-extended if the field is signed, otherwise zero-extended.
         value: u32,
     },
-    /// Computes destination := value. For a destination of more than 32 bits, the value is extended by its sign if the
-    /// destination is signed, otherwise by zeros.
+    /// Computes destination := value. For a destination of more than 32 bits, the value is sign-extended if the
+    /// destination is signed, otherwise zero-extended.
     LoadConstant {
         /// Field that receives the constant.
         destination: Operand,
@@ -293,7 +293,7 @@ pub enum ArrayInstruction {
     MultiplyConstant {
         /// Field that receives the product.
         destination: Operand,
-        /// Field to multiply, extended by its sign if it is signed, otherwise by zeros.
+        /// Field to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Factor in two's complement, of which the low `factor_bits` bits are used.
         factor: i32,

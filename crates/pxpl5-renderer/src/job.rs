@@ -233,6 +233,7 @@ mod tests {
             region: RegionId(3),
             lines: Lines::Frame,
         };
+        // Region 3 begins at column 384. The list selects it, clears it and copies it.
         let select = Command::SelectRegion(SelectRegion { context: 0, left: 384, top: 0 });
         let commands = [select, Command::Clear(Clear { colour }), Command::CopyRegion(CopyRegion { target })];
         let mut words = Vec::new();

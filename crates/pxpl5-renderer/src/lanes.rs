@@ -286,10 +286,12 @@ mod tests {
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {
+                // Positions are in 1/16 pixel. The shape is at least as high as wide.
                 let place = [128, 64].map(|origin| 16 * (origin + (random.signed(9) & 127)));
                 let tall = [6, 6, 10, 13][random.below(4) as usize];
                 let mut corners = [(); 3].map(|()| [place[0] + random.signed(6), place[1] + random.signed(tall)]);
                 let [[ax, ay], [bx, by], [cx, cy]] = corners;
+                // Edges are positive inside only for one order of the corners.
                 if (bx - ax) * (cy - ay) < (cx - ax) * (by - ay) {
                     corners.swap(1, 2);
                 }
@@ -352,6 +354,7 @@ mod tests {
             let list = CommandContent::new(Arc::new(some(layout, &mut random, with_normals)), 0);
             let mut words = Vec::new();
             list.append_words(&mut words);
+            // Every vector unit of this computer must give the same bits.
             for vectors in Vectors::available() {
                 let mut by_words = Lanes::with_vectors(&layout, vectors);
                 by_words.execute(&words).expect("whole commands");

@@ -122,8 +122,8 @@ impl Layout {
     /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory; its text draws the bit ranges.
-    /// [`LayoutError::Width`] if a field has a wrong width.
+    /// Returns [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory; its text draws the bit
+    /// ranges. [`LayoutError::Width`] if a field has a wrong width.
     pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);

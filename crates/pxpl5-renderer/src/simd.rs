@@ -182,8 +182,8 @@ pub(crate) trait SimdVector: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// For each number of four bits, four lanes that are all ones where the number's bit is set. Without AVX2, processors
-/// cannot shift each lane by its own count.
+/// A mask of four lanes for each number of four bits. A lane is all ones if the corresponding bit of the number is set.
+/// Processors without AVX2 need this table, because they cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
     let mut bits = 0;
@@ -442,6 +442,7 @@ mod tests {
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };
+            // Position of lane k in an array whose rows hold four lanes each.
             let at = |k: usize| k / FOUR * ROW + k % FOUR;
             let ones = |truth: bool| -i32::from(truth);
             let passes = |k: usize| k < lanes && a[k] as i32 >= 0 && (b[k] as i32) < c[k] as i32;
@@ -449,6 +450,7 @@ mod tests {
             let mut stored = *b;
             let mut stored_fours = *rows;
             let mut mask = [7; 16];
+            // Stores change only the lanes that pass the test.
             for k in 0..lanes {
                 stored[k] = if passes(k) { a[k] } else { c[k] };
                 stored_fours[at(k)] = stored[k];

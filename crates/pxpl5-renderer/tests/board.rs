@@ -62,7 +62,7 @@ fn a_region_leaves_in_whole_messages_of_which_the_last_one_is_told_back() {
 }
 
 #[test]
-fn whoever_asked_is_told_when_the_last_pixel_has_come() {
+fn the_board_that_ordered_a_copy_is_notified_when_the_last_pixel_has_arrived() {
     let mut bench = Bench::new();
     let order = order(1, CopyPath::FromPixelMemory, CopyContent::Colour);
     bench.announce(BEGIN, list(&[run(CommandKind::CopyRegion, 1)], &[order]));
@@ -180,7 +180,7 @@ fn a_copy_command_without_an_order_ends_at_once() {
 /// Sends two triangles in one message, or in two messages, of which the second is announced before the first has
 /// arrived.
 #[test]
-fn whoever_watches_the_fifo_sees_words_between_their_last_one_and_the_start_of_their_command() {
+fn a_watched_fifo_counts_words_from_their_last_word_to_the_start_of_their_command() {
     for messages in [1, 2] {
         let mut bench = Bench::new();
         bench.device.watch_fifo();
@@ -205,7 +205,7 @@ fn whoever_watches_the_fifo_sees_words_between_their_last_one_and_the_start_of_t
 }
 
 #[test]
-fn where_nobody_watches_nothing_is_known_of_the_fifo() {
+fn an_unwatched_fifo_has_no_counts() {
     let mut bench = Bench::new();
     bench.announce(BEGIN, list(&[run(CommandKind::Triangle, 2)], &[]));
     bench.run();

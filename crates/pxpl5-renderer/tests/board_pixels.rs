@@ -134,7 +134,7 @@ fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_
 /// Commands count from their start on: a select has two words, a clear five. The earlier picture is visible until the
 /// clear starts, the second time after five selects of six clocks.
 #[test]
-fn whoever_looks_into_the_array_sees_what_has_started() {
+fn a_snapshot_of_the_array_shows_all_commands_that_have_started() {
     let mut bench = Bench::new();
     bench.device.watch_fifo();
     let second = BEGIN + Span::from_us(100);
@@ -188,7 +188,7 @@ fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
 }
 
 #[test]
-fn a_clear_hides_nothing_of_another_context_from_whoever_looks() {
+fn a_clear_hides_no_pixels_of_another_context() {
     let mut bench = Bench::new();
     bench.device.watch_fifo();
     for (us, context, colour_sent) in [(0, 1, 0x10_20_30), (100, 0, 0x40_50_60)] {

@@ -33,8 +33,8 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word slots until the message ends. `message` is the message itself until its receiver is told. Both
-    /// are used only by [`Ring::move_every_word`](crate::Ring::move_every_word).
+    /// Number of word slots until the message ends. `message` is the message itself until it is passed to the receiver.
+    /// Only [`Ring::move_every_word`](crate::Ring::move_every_word) uses these two fields.
     pub(crate) slots_left: u64,
     pub(crate) message: Option<Box<Message>>,
 }

@@ -149,7 +149,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     ///
     /// # Errors
     ///
-    /// [`RingError::OffTick`] if a time of the timing table or of the traffic is not a multiple of `tick`.
+    /// Returns [`RingError::OffTick`] if a time of the timing table or of the traffic is not a multiple of `tick`.
     /// [`RingError::Unfinished`] if a message is not delivered at `until`.
     pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;

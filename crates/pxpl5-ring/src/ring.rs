@@ -105,13 +105,14 @@ impl Ring {
         })
     }
 
-    /// Makes every end of a message an event of its own. [`Ring::busy_channels`] is then correct after every event.
+    /// Schedules a separate event for the end of every message. [`Ring::busy_channels`] is then correct after every
+    /// event.
     pub const fn watch(&mut self) {
         self.watched = true;
     }
 
-    /// Makes every word of a message an event of its own. Normally the end of a message is computed at its grant. The
-    /// times of messages stay the same. Receivers with a FIFO still answer for whole messages.
+    /// Schedules a separate event for every word of a message. Normally the end of a message is computed at its grant.
+    /// The times of messages stay the same. Receivers with a FIFO still answer for whole messages.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
     }

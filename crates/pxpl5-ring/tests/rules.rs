@@ -215,7 +215,7 @@ fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_
 /// A snapshot shows a message on its channel from the grant to the end of its last word's slot. The end is known after
 /// the receiver's answer.
 #[test]
-fn whoever_looks_sees_what_is_on_the_channels_until_it_ends() {
+fn a_snapshot_shows_a_message_on_its_channel_until_the_message_ends() {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
     bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(1, 4, 9, 100)));
@@ -319,7 +319,7 @@ fn an_answer_to_nothing_and_an_impossible_answer_are_faults_without_a_panic() {
 }
 
 #[test]
-fn a_deadlock_report_names_who_waits_on_whom() {
+fn a_deadlock_report_names_each_waiting_board_and_the_cause() {
     let mut bench = bench();
     let mut ring = ring_with_a_fifo();
     let mut held = request(1, 0, 1, 10);

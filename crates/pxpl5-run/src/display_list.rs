@@ -80,7 +80,7 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
 ///
 /// # Panics
 ///
-/// Never, because every display has surfaces with a width and height of 1 to 65,536 pixels.
+/// Never panics, because every display has surfaces with a width and height of 1 to 65,536 pixels.
 pub(crate) fn hmd_before(surface: Option<&Surface>, hmd: HmdConfig) -> Hmd {
     let config = surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd });
     Hmd::new(config).expect("a surface has pixels")

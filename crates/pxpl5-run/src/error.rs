@@ -21,7 +21,7 @@ pub enum ExperimentError {
         /// Number of fields that was requested.
         found: u64,
     },
-    /// Only pictures of start-up were shown. The observations of the run are kept.
+    /// Only pictures of the warm-up were shown. The observations of the run are kept.
     #[error(
         "only {} shown in {} and the first {WARM_UP_PICTURES} are discarded; {}",
         were(*pictures as u64, "picture"),
@@ -31,19 +31,19 @@ pub enum ExperimentError {
     TooShort {
         /// Number of simulated fields.
         fields: u64,
-        /// Number of pictures that were shown. All of them belong to start-up and are not evaluated.
+        /// Number of pictures that were shown. All of them belong to the warm-up and are not evaluated.
         pictures: usize,
-        /// Approximate number of fields until a picture after start-up is shown. `None` if no picture was shown.
+        /// Approximate number of fields until a picture after the warm-up is shown. `None` if no picture was shown.
         ///
-        /// The number comes from the pipeline's analytic model ([`crate::Experiment::with_estimates`]). Without such a
-        /// model, the number is extrapolated from the run.
+        /// The number comes from the pipeline's closed form ([`crate::Experiment::with_estimates`]). Without a closed
+        /// form, the number is extrapolated from the run.
         needed: Option<u64>,
         /// Outcome of the run, with all observations.
         partial: Box<Outcome>,
     },
     /// The recording of the head's motion ends before the end of the run.
     #[error(
-        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or say what comes after its end \
+        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or set the behaviour after its end \
          (head.end = \"hold\" or \"loop\")",
         seconds(*recording),
         seconds(*run)

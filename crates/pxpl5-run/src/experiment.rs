@@ -35,7 +35,8 @@ pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters whose values no source supports.
 ///
-/// Such a value lies outside the stated range of its parameter, and differs from the values of preset and pipeline.
+/// An unsupported value lies outside the stated range of its parameter, and differs from the values of preset and
+/// pipeline.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -52,7 +53,7 @@ pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
     let name = pipeline.name();
     Some(format!(
-        "{name} at the cycle level: there is no i860 code for {what}: that takes the times of the table (gp.*)"
+        "{name} at the cycle level: there is no i860 code for {what}; this work takes the times of the timing table (gp.*)"
     ))
 }
 
@@ -80,10 +81,10 @@ pub struct Experiment {
     pub(crate) rehearsed: Option<Arc<DryRun>>,
 }
 
-/// Functions by which a pipeline's analytic model estimates results of an experiment, before or after a run.
+/// Functions by which a pipeline's closed form estimates results of an experiment, before or after a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimates {
-    /// Function that estimates the number of fields until the first picture after start-up is shown.
+    /// Function that estimates the number of fields until the first picture after the warm-up is shown.
     ///
     /// The function returns `None` if no such picture will be shown, or if the model cannot tell.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
@@ -213,7 +214,7 @@ impl Experiment {
         self
     }
 
-    /// Sets the functions that estimate values for error messages, from the pipeline's analytic model.
+    /// Sets the functions that estimate values for error messages, from the pipeline's closed form.
     ///
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
@@ -259,7 +260,7 @@ impl Experiment {
 
     /// Returns an estimate of how many of the scene's first primitives can be shown in time.
     ///
-    /// The estimate comes from the pipeline's analytic model. Returns `None` without such a model.
+    /// The estimate comes from the pipeline's closed form. Returns `None` without a closed form.
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
@@ -280,7 +281,7 @@ impl Experiment {
         &self.hmd
     }
 
-    /// Sets the period of the first display at which the result window begins. The window begins later if start-up
+    /// Sets the period of the first display at which the result window begins. The window begins later if the warm-up
     /// takes longer.
     ///
     /// With this setting, different pipelines are evaluated over the same periods, to within one interval between due

@@ -102,6 +102,7 @@ impl Fingerprint {
 
     /// Adds a structure without its name, which is for users only.
     fn structure(&mut self, structure: &Structure) {
+        // The pattern lists all fields, so a new field cannot be forgotten.
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;
         self.range(vertices);
         self.range(triangles);
@@ -110,6 +111,7 @@ impl Fingerprint {
             Frame::World => 0,
             Frame::Head => 1,
         }]);
+        // This byte distinguishes a structure without hinge from the numbers of a hinge.
         self.add(&[u8::from(hinge.is_some()) | u8::from(*culls_back_faces) << 1]);
         if let Some(Hinge { point, axis, amplitude_deg, period_ps, phase_turns }) = hinge {
             self.vector(*point);

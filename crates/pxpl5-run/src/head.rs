@@ -91,7 +91,7 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// Like [`Head::new`].
+    /// Fails in the same cases as [`Head::new`].
     pub fn predicted_by(
         motion: Arc<dyn Motion + Send + Sync>,
         tracker: TrackerConfig,
@@ -141,11 +141,11 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
+    /// Returns [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
     pub fn evaluated_at(self, metres: f64) -> Result<Self, HeadError> {
         let (low, high) = JUDGED_AT_M;
         if !(low..=high).contains(&metres) {
-            let what = "distance at which errors are judged, m";
+            let what = "distance at which errors are evaluated, m";
             return Err(HeadError::OutOfRange { what, found: metres, low, high });
         }
         Ok(Self { judge_at_m: Some(metres), ..self })

@@ -9,10 +9,10 @@
 //! The ring needs no third form. A property test of the ring's crate shows that the events and a word-by-word reference
 //! model give the same picosecond for every message.
 //!
-//! All work of graphics processors in the pipelines of this crate is i860 code (docs/gp-timing.md): Rendering Control,
-//! Slats, just-in-time pixels, frameless rendering and the pipelines with six faces. No time of the cycle level comes
-//! from the table, which `tests/cycle.rs` checks. Other pipelines take the times of the table for work without code
-//! ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports say so.
+//! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines with six faces.
+//! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). No time of the cycle level
+//! comes from the table, which `tests/cycle.rs` checks. Other pipelines take the times of the table for work without
+//! code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports say so.
 //!
 //! The machine selects the code that runs ([`MachineConfig::code`]), independent of its table of times. With the times
 //! of the code in the table ([`MachineConfig::with_times_of_code`]), the transaction level agrees with the cycle level

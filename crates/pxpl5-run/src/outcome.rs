@@ -126,7 +126,7 @@ impl Outcome {
         self.steady_pictures().iter().filter(|times| times.is_shown())
     }
 
-    /// Returns the number of complete pictures in the whole run, including start-up.
+    /// Returns the number of complete pictures in the whole run, including the warm-up.
     #[must_use]
     pub const fn shown(&self) -> u64 {
         self.closed.tally.shown
@@ -149,7 +149,7 @@ impl Outcome {
     /// Returns the number of complete new pictures per second, over the result window.
     ///
     /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
-    /// two pictures were shown, or if all of them belong to start-up.
+    /// two pictures were shown, or if all of them belong to the warm-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;

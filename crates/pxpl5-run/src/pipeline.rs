@@ -145,7 +145,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] for a scene that cannot be cut into segments.
+    /// Returns [`ConfigError`] for a scene that cannot be cut into segments.
     fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
         Ok(None)
     }
@@ -155,14 +155,14 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     ///
     /// At the cycle level, work without code takes its times from the timing table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
-        Some("what its firmware does besides messages")
+        Some("all work of its firmware except messages")
     }
 
     /// Loads the pipeline's programs onto the boards.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] if the pipeline cannot run on the machine.
+    /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
     /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The pictures

@@ -32,7 +32,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::run`].
+    /// Fails in the same cases as [`Experiment::run`].
     pub fn rehearsed(self) -> Result<Self, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(self) };
         let rehearsed = Some(self.rehearse(head)?);

@@ -59,7 +59,7 @@ pub struct LimitCriterion {
     pub fields: u64,
 }
 
-/// The analytic model of a pipeline: formulas that give the results of an experiment without simulated events.
+/// The closed form of a pipeline: formulas that give the results of an experiment without simulated events.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm {
     /// Function that computes the summary of an experiment.
@@ -88,7 +88,7 @@ pub struct PipelineEntry {
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
     /// Timing tables of the firmware. The name of a table, such as `jitp`, begins the paths of its parameters.
     pub tables: &'static [NamedTable],
-    /// Analytic model of the pipeline, or `None` if it has none.
+    /// Closed form of the pipeline, or `None` if it has none.
     pub closed_form: Option<ClosedForm>,
     /// True if the command `compare` has a row for the pipeline.
     pub compared: bool,
@@ -143,7 +143,7 @@ impl Registry {
         }
     }
 
-    /// Sets the analytic model for all pipelines of a family.
+    /// Sets the closed form for all pipelines of a family.
     pub fn closed_form(&mut self, family: &str, form: ClosedForm) {
         let of_family = self.pipelines.iter_mut().filter(|entry| entry.family == family);
         of_family.for_each(|entry| entry.closed_form = Some(form));

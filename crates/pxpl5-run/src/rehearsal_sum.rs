@@ -37,7 +37,7 @@ pub(crate) struct DryRunObserver {
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
     shown: LightTimes,
-    /// True if a complete picture showed the view after start-up.
+    /// True if a complete picture showed the view after the warm-up.
     is_complete: bool,
 }
 

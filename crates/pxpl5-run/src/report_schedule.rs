@@ -96,7 +96,7 @@ mod tests {
     proptest! {
         /// The reference model is a list of all reports. Several reports may arrive at the same poll of a kernel.
         #[test]
-        fn what_was_given_up_is_not_missed_by_whoever_asks_about_later_instants(
+        fn discarded_reports_are_not_needed_for_later_instants(
             mut all in proptest::collection::vec(0u64..200, 0..60), questions in proptest::collection::vec(0u64..220, 1..60),
         ) {
             all.sort_unstable();

@@ -18,7 +18,7 @@ pub enum Warp {
     Depth,
 }
 
-/// The part of a scan for which the device takes one newest pose.
+/// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Every {
@@ -35,7 +35,7 @@ pub enum Every {
 pub struct Reprojection {
     /// The method by which the device moves a picture.
     pub by: Warp,
-    /// The part of a scan for which the device takes one newest pose.
+    /// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
     pub every: Every,
     /// Time from taking a pose until the first pixel moved to this pose is lit, in microseconds.
     pub latency_us: u64,
@@ -55,9 +55,9 @@ impl Every {
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
-    /// For poses per field, the latency is 2,000: a graphics processor begins this long before the retrace (1,000 to
-    /// 4,000). For poses per strip it is 500, and for poses per line 100: a pipeline beside the scan holds a few lines
-    /// (64 to 1,000).
+    /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
+    /// (range 1,000 to 4,000). The latency is 500 for one pose per strip and 100 for one pose per line, because a
+    /// pipeline beside the scan holds a few lines (64 to 1,000).
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

@@ -1,10 +1,10 @@
 //! The result window: the display periods over which latencies, pictures due, errors and rates are computed.
 //!
-//! Start-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
-//! were begun. The window begins after start-up, with the periods of the next picture that is due.
+//! The warm-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
+//! were begun. The window begins after the warm-up, with the periods of the next picture that is due.
 //!
 //! If a due picture in the first half of the run was not shown, the window begins with the first such picture. So no
-//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of start-up
+//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of the warm-up
 //! never have a latency or an error.
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
@@ -18,10 +18,10 @@ use serde::Serialize;
 pub const WARM_UP_PERIODS: u64 = 8;
 
 /// Rule for the window of a run, in words for readers of a report.
-pub const WINDOW_DEFINITION: &str = "latencies, pictures due, errors and rates are over one window: from the 9th period of the display, or \
-    from the turn of the fifth picture if that is later, to the last period that was over; where a picture due in the first half of the \
-    run was not shown, from the first such picture, since those before it may owe their time to queues that were still empty; the first \
-    four pictures have no latency and no error";
+pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates cover one window; it begins with the 9th period of the \
+    display, or with the first period of the fifth picture if that is later, and it ends with the last complete period; if a picture \
+    due in the first half of the run was not shown, it begins with the first such picture, because earlier pictures may have profited \
+    from empty queues; the first four pictures have no latency and no error";
 
 /// Periods of the first display over which all results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -30,13 +30,13 @@ pub struct ResultWindow {
     pub first_period: PeriodNumber,
     /// Last period of the window, inclusive.
     pub last_period: PeriodNumber,
-    /// Period of the first picture after start-up. `None` if the run shows no picture after start-up.
+    /// Period of the first picture after the warm-up. `None` if the run shows no picture after the warm-up.
     #[serde(skip)]
     steady_from: Option<PeriodNumber>,
 }
 
 impl ResultWindow {
-    /// Returns the window of a run that has ended. Returns `None` if no period remains after start-up, or if the
+    /// Returns the window of a run that has ended. Returns `None` if no period remains after the warm-up, or if the
     /// remaining periods are too few for a due picture.
     ///
     /// `reached` is the first period that was not simulated to its end. `every` is the number of periods from one due
@@ -63,10 +63,10 @@ impl ResultWindow {
     /// window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
-        // Start-up may take at most the first half of the requested run.
+        // The warm-up may take at most the first half of the requested run.
         let middle = WARM_UP_PERIODS + planned.0.saturating_sub(WARM_UP_PERIODS) / 2;
         let start = ends.first_from(0).unwrap_or_default().min(middle);
-        // If start-up takes more than half of the run, due pictures are counted from the first picture on.
+        // If the warm-up takes more than half of the run, due pictures are counted from the first picture on.
         let steady = steady_from.map(|period| period.0).filter(|period| *period < middle).unwrap_or(start);
         let first = every.map_or(steady.max(WARM_UP_PERIODS), |every| {
             let every = every.max(1);
@@ -93,7 +93,7 @@ impl ResultWindow {
         (self.first_period..=self.last_period).contains(&period)
     }
 
-    /// Returns true if a picture that is first shown in `period` lies in the window and after start-up.
+    /// Returns true if a picture that is first shown in `period` lies in the window and after the warm-up.
     #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
@@ -108,8 +108,8 @@ impl ResultWindow {
 
 /// Returns the period in which the first counted picture is due.
 ///
-/// This is the first picture due between `start` and `end` that was not shown. If all were shown, it is the first
-/// picture due at or after `steady`.
+/// The result is the first period between `start` and `end` whose due picture was not shown. If all due pictures were
+/// shown, the result is the first due period at or after `steady`.
 fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);
@@ -132,7 +132,7 @@ mod tests {
         let from = |period| Some(PeriodNumber(period));
         assert_eq!(window(9, 99).not_before(from(20), Some(3)), Some(window(21, 99)), "9 + 4 x 3");
         assert_eq!(window(9, 99).not_before(from(20), None), Some(window(20, 99)));
-        assert_eq!(window(30, 99).not_before(from(20), Some(3)), Some(window(30, 99)), "start-up took longer");
+        assert_eq!(window(30, 99).not_before(from(20), Some(3)), Some(window(30, 99)), "the warm-up took longer");
         assert_eq!(window(9, 99).not_before(from(100), Some(1)), None);
         assert_eq!(window(9, 99).not_before(None, Some(3)), Some(window(9, 99)));
     }

@@ -14,7 +14,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
+    /// Returns [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
         Ok(self.assemble(self.prepare()?)?.machine)
     }
@@ -23,8 +23,9 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far if the run ends early.
-    /// Returns [`ExperimentError::TooShort`] with all observations if only pictures of start-up were shown.
+    /// Fails in the same cases as [`Experiment::build`]. Returns [`ExperimentError::Run`] with all observations so far
+    /// if the run ends early. Returns [`ExperimentError::TooShort`] with all observations if only pictures of the
+    /// warm-up were shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }
@@ -34,7 +35,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::run`].
+    /// Fails in the same cases as [`Experiment::run`].
     pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
         self.run_stopping(&[], |field, _| {
             progress(field.since(PeriodNumber::FIRST), self.fields);
@@ -49,7 +50,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::run`], and any error that `at` returns.
+    /// Fails in the same cases as [`Experiment::run`], and with any error that `at` returns.
     pub fn run_stopping(
         &self,
         stops: &[PeriodNumber],
@@ -66,7 +67,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::build`].
+    /// Fails in the same cases as [`Experiment::build`].
     pub fn stepper(&self) -> Result<Stepper, ExperimentError> {
         Stepper::begin(self, self.prepare()?)
     }

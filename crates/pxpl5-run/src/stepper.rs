@@ -153,7 +153,7 @@ impl Stepper {
     ///
     /// # Errors
     ///
-    /// Like [`Experiment::run`].
+    /// Fails in the same cases as [`Experiment::run`].
     pub fn finish(mut self) -> Result<Outcome, ExperimentError> {
         self.break_at(BTreeSet::new());
         while self.failure().is_none() && self.now < self.end() {
@@ -342,7 +342,7 @@ fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
 }
 
-/// Estimates the number of fields until a picture after start-up is shown.
+/// Estimates the number of fields until a picture after the warm-up is shown.
 ///
 /// The estimate assumes that pictures keep their mean interval. For a single picture, the interval is the time until
 /// this picture was shown.

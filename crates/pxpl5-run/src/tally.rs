@@ -25,7 +25,7 @@ pub const LATE_REGIONS_LISTED: usize = 20;
 pub struct Tally {
     /// Number of pictures that were begun and evaluated, complete or not.
     pub pictures: u64,
-    /// Number of complete pictures that were shown in the whole run, including start-up.
+    /// Number of complete pictures that were shown in the whole run, including the warm-up.
     pub shown: u64,
     /// Number of complete pictures in the result window.
     pub complete: u64,

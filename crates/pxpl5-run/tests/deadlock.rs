@@ -29,7 +29,7 @@ impl Pipeline for Waiting {
         let node = machine.ports().gps[0];
         let gp = machine.processor(node, Priority::Foreground);
         let program = async move {
-            gp.until("a message that nobody sends", || None::<()>).await;
+            gp.until("a message that is never sent", || None::<()>).await;
             Ok(())
         };
         machine.load(node, Priority::Foreground, Box::pin(program));
@@ -56,11 +56,11 @@ fn run(pipeline: impl Pipeline + 'static, fields: u64) -> ExperimentError {
 }
 
 #[test]
-fn a_run_of_any_length_in_which_nobody_can_go_on_is_a_deadlock() {
+fn a_run_of_any_length_in_which_all_programs_wait_is_a_deadlock() {
     for fields in [1, 2, 12, 119, 200] {
         match run(Waiting, fields) {
             ExperimentError::Run { error: RunError::Deadlock { blocked, .. }, partial } => {
-                assert!(blocked.iter().any(|b| b.waits_for == "a message that nobody sends"), "{blocked:?}");
+                assert!(blocked.iter().any(|b| b.waits_for == "a message that is never sent"), "{blocked:?}");
                 assert_eq!(partial.fields(), fields);
             }
             other => panic!("{fields} fields: {other}"),
@@ -85,7 +85,7 @@ fn a_stepper_stands_at_a_deadlock_and_gives_the_same_error_in_the_end() {
     let Pause::Failed(error) = stepper.run_to(stepper.end()) else { panic!("it waits for ever") };
     assert_eq!((stepper.now(), stepper.failure()), (error.time(), Some(&error)));
     let look = stepper.processor(Board::Gp(0)).expect("a graphics processor");
-    assert_eq!(look.programs[0].waits_for, "a message that nobody sends");
+    assert_eq!(look.programs[0].waits_for, "a message that is never sent");
     assert_eq!(stepper.step_event(), Pause::Failed(error.clone()));
     let Err(ExperimentError::Run { error: whole, .. }) = experiment.run() else { panic!("it fails") };
     assert_eq!(whole, error);

@@ -148,8 +148,8 @@ proptest! {
         }
     }
 
-    /// Start-up does not affect the rate if it takes less than half of the run. A run of twice the length has the same
-    /// rate, to within one picture.
+    /// The warm-up does not affect the rate if it takes less than half of the run. A run of twice the length has the
+    /// same rate, to within one picture.
     #[test]
     fn a_rate_does_not_depend_on_the_length_of_the_run(filled in 2u64..190, apart in 1u64..9) {
         let [short, long] = [400, 800].map(|periods| count(&filling(filled, apart, periods), 1, periods));
@@ -164,7 +164,7 @@ proptest! {
         prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
     }
 
-    /// No failure is left out: a picture after start-up that was not shown lies in the window.
+    /// No failure is left out: a picture after the warm-up that was not shown lies in the window.
     #[test]
     fn the_window_holds_every_picture_that_was_not_shown(at in WARM_UP_PERIODS..300, periods in 300u64..400) {
         let mut pictures = regular(0, 1, periods, Shown);

@@ -267,7 +267,7 @@ fn bins_of_rendering_control_hold_642_triangles_that_cover_the_screen_and_no_mor
 }
 
 #[test]
-fn just_in_time_pixels_show_what_the_oracle_draws() {
+fn just_in_time_pixels_show_the_ideal_picture() {
     let registry = Registry::of_papers();
     let scene = still("sphere:10");
     for name in ["jitp-field", "jitp-field-racing", "jitp-scanline", "jitp-dual-screen", "jitp-dual-view-racing"] {

@@ -75,7 +75,7 @@ fn said(outcome: &Outcome) -> Vec<String> {
 }
 
 #[test]
-fn what_is_kept_changes_nothing_that_is_said() {
+fn discarding_records_changes_no_result() {
     experiments().par_iter().for_each(|(name, experiment)| {
         let everything = run(experiment, Keep::Everything);
         let statistics = run(experiment, Keep::Statistics);
@@ -92,8 +92,8 @@ fn what_is_kept_changes_nothing_that_is_said() {
     });
 }
 
-/// Returns counts of a run: the largest numbers of records and of pending events at any stop, all records that were
-/// read, all events, and the poses in memory at the end.
+/// Returns counts of a run. The counts are the largest numbers of records and of pending events at any stop, all
+/// records that were read, all events, and the poses in memory at the end.
 fn work(experiment: &Experiment, fields: u64) -> [u64; 5] {
     let mut most = [0, 0];
     let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {

@@ -13,7 +13,7 @@ fn head(kind: PredictorKind) -> Head {
 }
 
 #[test]
-fn what_one_predictor_was_told_serves_another() {
+fn one_predictor_continues_with_the_reports_of_another() {
     let registry = Registry::of_papers();
     for name in ["rendering-control", "slats", "jitp-field", "arp-full-line"] {
         let pipeline = (registry.pipeline(name).expect("listed").build)(&PipelineSettings::default());
@@ -34,7 +34,7 @@ fn what_one_predictor_was_told_serves_another() {
 }
 
 #[test]
-fn whoever_does_not_predict_rehearses_nothing() {
+fn an_experiment_without_prediction_has_no_dry_run() {
     let registry = Registry::of_papers();
     let pipeline = (registry.pipeline("slats").expect("listed").build)(&PipelineSettings::default());
     let scene = Arc::new(builtin("sphere:100").expect("even"));

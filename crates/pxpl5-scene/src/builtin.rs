@@ -20,7 +20,7 @@ use crate::scene::Scene;
 const NAMES: [(&str, &str); 10] = [
     (
         "aircraft",
-        "A swept-wing jet of 100 triangles, few enough for Slats; whole and closed, on the fly-through of mig.",
+        "A swept-wing jet of 100 triangles: a closed surface that Slats can draw in time, on the fly-through of mig.",
     ),
     ("mig", "A swept-wing jet fighter of 417 triangles with moving control surfaces, seen from a fly-through."),
     (
@@ -30,20 +30,20 @@ const NAMES: [(&str, &str); 10] = [
     ("head", "A human head as a closed, smooth surface of 59,592 triangles."),
     (
         "room",
-        "A room of 4 triangles, whose walls are 2 m from the viewer and meet in corners 6 m away: world content wherever the head turns.",
+        "A room of 4 triangles, whose walls are 2 m from the viewer and meet in corners 6 m away. It fills the view in every direction.",
     ),
     (
         "gallery",
-        "A hall of 40 x 40 x 4 m with ten partitions, all of large quadrangles, and a closed path through it: 112 triangles to walk among.",
+        "A hall of 40 x 40 x 4 m with ten partitions, all of large quadrangles, and a closed path through it: 112 triangles.",
     ),
     ("gallery:full", "The same hall with 30 frames on its partitions and ten benches."),
     (
         FULL_SCREEN,
-        "N triangles, each covering the whole screen of both eyes wherever the head turns; 12 make the trivial scene of TR94.",
+        "N triangles that move with the head, each covering the whole screen of both eyes; 12 make the trivial scene of TR94.",
     ),
     (
         TYPICAL,
-        "N small triangles, each touching 1.3 regions on average, spread over the screen wherever the head turns.",
+        "N small triangles that move with the head, each touching 1.3 regions on average, spread over the screen.",
     ),
     (SPHERE, "A ball as a closed, smooth surface of N triangles; N is even."),
 ];

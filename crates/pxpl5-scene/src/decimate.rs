@@ -29,7 +29,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`SceneError::Kept`] if `n` is zero or exceeds the number of primitives.
+    /// Returns [`SceneError::Kept`] if `n` is zero or exceeds the number of primitives.
     pub fn decimated(&self, n: usize) -> Result<Self, SceneError> {
         let triangles = self.triangles().len();
         let spheres = self.spheres().len();

@@ -30,8 +30,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`SceneError::Part`] if a triangle refers to a missing vertex, a coordinate is not finite, or the mesh has no
-    /// triangles.
+    /// Returns [`SceneError::Part`] if a triangle refers to a missing vertex, a coordinate is not finite, or the mesh
+    /// has no triangles.
     pub fn from_triangles(corners: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, SceneError> {
         let mut normals = vec![Vec3::ZERO; corners.len()];
         for triangle in triangles {

@@ -91,7 +91,7 @@ impl Format {
 ///
 /// # Errors
 ///
-/// [`LoadError::Io`] if the reader fails, and all errors of [`from_bytes`].
+/// Returns [`LoadError::Io`] if the reader fails, and all errors of [`from_bytes`].
 pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_reader(reader, format, name, Placement::Fitted)
 }

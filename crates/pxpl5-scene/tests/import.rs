@@ -395,7 +395,7 @@ fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
         ),
         (file("1.0", "", " 7", "", ""), "line 11: expected the end of a row of \"vertex\" (x y z), found \"7\""),
         (file("1.0", "", "", " 0", ""), "line 13: expected the end of a row of \"face\" (vertex_indices), found \"0\""),
-        (file("1.0", "", "", "", "3 0 1 2\n"), "line 14: expected the end of the file behind the last row"),
+        (file("1.0", "", "", "", "3 0 1 2\n"), "line 14: expected the end of the file after the last row"),
     ] {
         let error = read(Format::Ply, &text).expect_err(says).to_string();
         assert!(error.contains(says), "{error}");

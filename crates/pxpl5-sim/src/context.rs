@@ -1,4 +1,4 @@
-//! The interface of a device to the simulation during one event. Also a test bench for a single device.
+//! The interface of a device to the simulation during one event, and a test bench for a single device.
 
 use crate::{EventQueue, Phase, Span, Time};
 

@@ -16,7 +16,7 @@
 //! 1. Events are handled in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then devices *work*
 //!    on them, then observers *observe*.
 //! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
-//!    simultaneous requests stores them in `Arrive` and chooses in `Work` by a rule of its own (first come, then lowest
+//!    simultaneous requests stores them in `Arrive`. It chooses in `Work` by a rule of its own (first come, then lowest
 //!    port).
 //! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
 //!    changes

@@ -94,8 +94,8 @@ impl<E> EventQueue<E> {
     ///
     /// # Panics
     ///
-    /// If `time` is earlier than the current time, because the caller has violated the ordering contract. Also if 2^32
-    /// events are waiting.
+    /// Panics if `time` is earlier than the current time, because the caller has violated the ordering contract. Also
+    /// panics if 2^32 events are waiting.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
         // Work for the current instant comes after all other work of the instant, so it needs no sorting.

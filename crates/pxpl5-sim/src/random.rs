@@ -30,7 +30,7 @@ impl SplitMix64 {
     ///
     /// # Panics
     ///
-    /// If `n` is 0.
+    /// Panics if `n` is 0.
     pub const fn below(&mut self, n: u64) -> u64 {
         self.bits() % n
     }

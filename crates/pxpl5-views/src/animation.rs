@@ -17,7 +17,7 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// [`PngError`] if the encoder refuses the values, for example an animation without pictures.
+    /// Returns [`PngError`] if the encoder refuses the values, for example an animation without pictures.
     pub fn begin(
         out: W,
         size: (u32, u32),
@@ -35,7 +35,7 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// [`PngError`] if the picture has another size, or if the animation already has all its pictures.
+    /// Returns [`PngError`] if the picture has another size, or if the animation already has all its pictures.
     pub fn add(&mut self, picture: &RgbImage) -> Result<(), PngError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }
@@ -44,7 +44,7 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// [`PngError`] if pictures are missing.
+    /// Returns [`PngError`] if pictures are missing.
     pub fn finish(self) -> Result<(), PngError> {
         Ok(self.writer.finish()?)
     }

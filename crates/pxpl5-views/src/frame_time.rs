@@ -40,8 +40,8 @@ impl Fraction {
         Self { over: times * self.over + before.over, under: times * self.under + before.under }
     }
 
-    /// Returns the largest number `times` for which `followed(times, before)` has a numerator and a denominator of at
-    /// most [`LIMIT`].
+    /// Returns the largest factor `times` with which numerator and denominator of `followed(times, before)` stay within
+    /// [`LIMIT`].
     fn fits(self, before: Self) -> u128 {
         let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
         above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_longer_than_can_be_said_takes_as_long_as_can_be_said() {
+    fn times_beyond_the_largest_time_are_limited_to_it() {
         assert_eq!(nearest_fraction(Fraction { over: 100_000, under: 1 }), Fraction { over: 65_535, under: 1 });
     }
 }

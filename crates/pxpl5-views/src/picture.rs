@@ -18,7 +18,7 @@ pub struct PngError(
 ///
 /// # Errors
 ///
-/// [`PngError`] if the encoder refuses the picture or a text.
+/// Returns [`PngError`] if the encoder refuses the picture or a text.
 pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
     let mut writer = encoder(&mut bytes, picture.dimensions(), texts)?.write_header()?;

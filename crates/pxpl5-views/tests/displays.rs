@@ -97,7 +97,7 @@ fn every_display_of_a_machine_has_its_groups() {
         assert!(instants.len().abs_diff(expected) <= 1, "{display}: {} instead of {expected}", instants.len());
     }
     assert!(track(&trace, "left frame buffer, ntsc", "COPY").is_some());
-    assert!(track(&trace, "left frame buffer, hires", "COPY").is_none(), "nobody draws for it");
+    assert!(track(&trace, "left frame buffer, hires", "COPY").is_none(), "no pipeline draws for it");
 }
 
 #[test]

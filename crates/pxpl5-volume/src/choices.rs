@@ -44,7 +44,7 @@ impl ProjectionKind {
 /// The hardware that draws the slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RendererKind {
-    /// This computer, which takes the part of the paper's GPU.
+    /// The CPU of this computer, in place of the paper's GPU.
     Host,
     /// The emulated renderers of Pixel-Planes 5, which are beyond the paper.
     PixelPlanes,

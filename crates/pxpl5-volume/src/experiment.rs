@@ -83,7 +83,7 @@ impl Volume {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if the volume has fewer slices.
+    /// Returns [`VolumeError::Missing`] if the volume has fewer slices.
     pub fn check_slice(&self, slice: u32) -> Result<u32, VolumeError> {
         let slices = self.frame.planes.slices();
         if slice < slices {

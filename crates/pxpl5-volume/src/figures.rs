@@ -28,7 +28,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 ///
-/// [`VolumeError`] if a scene cannot be drawn.
+/// Returns [`VolumeError`] if a scene cannot be drawn.
 pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, u64)) -> Result<Figures, VolumeError> {
     let steps = scenes.len() as u64 + 2;
     // Figures that need no scene come first.

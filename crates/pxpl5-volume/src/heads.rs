@@ -120,9 +120,9 @@ pub struct HeadComparison<'a> {
 }
 
 impl Volume {
-    /// Returns the latency with which the volume shows changes of the scene, in milliseconds. It is the model's time
-    /// for one volume, plus two mean waits: half a turn until strobe 0, and then a quarter turn until the screen
-    /// reaches the changed plane. Returns `None` if the volume was not drawn by a GPU.
+    /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
+    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0, and then a quarter
+    /// turn until the screen reaches the changed plane. Returns `None` if the volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -136,11 +136,11 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
+    /// Returns [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
         let wrong = |found: String| VolumeError::Missing {
             what: "latency",
-            expected: "0 to 10000 ms (--latency; Pixel-Planes 5 has none of its own here)".to_owned(),
+            expected: "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)".to_owned(),
             found,
         };
         // The default is the latency of the volume itself.
@@ -178,7 +178,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, VolumeError> {
         let view = self.view()?;
@@ -263,7 +263,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
+    /// Returns [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
     pub fn picture(
         &self,
         time_ps: u64,

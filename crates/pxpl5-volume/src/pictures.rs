@@ -55,7 +55,7 @@ impl Look {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Display`] if the camera is invalid.
+    /// Returns [`VolumeError::Display`] if the camera is invalid.
     pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
         let undithered = match self.is_undithered {
             true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,
@@ -126,7 +126,7 @@ pub fn sheet(volume: &Volume) -> RgbImage {
 /// Returns a slice after halftoning, with each channel of a pixel on or off.
 ///
 /// # Panics
-/// If there is no such slice ([`Volume::check_slice`]).
+/// Panics if there is no such slice ([`Volume::check_slice`]).
 #[must_use]
 pub fn halftoned(volume: &Volume, slice: u32) -> RgbImage {
     let planes = &volume.frame.planes;

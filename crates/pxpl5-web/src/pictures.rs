@@ -146,9 +146,11 @@ pub(crate) fn outlines(picture: &IdealPicture) -> Vec<u8> {
     let [width, height] = [picture.image().width() as usize, picture.image().height() as usize];
     let depths = picture.depths();
     let mut bytes = vec![0; 4 * width * height];
+    // Pixels at the border lack a neighbour on one side.
     for y in 1..height.saturating_sub(1) {
         for x in 1..width.saturating_sub(1) {
             let at = y * width + x;
+            // The second difference is zero where depth is linear, as within a triangle.
             let bends = |step: usize| {
                 let [before, here, after] = [at - step, at, at + step].map(|at| i64::from(depths[at]));
                 (before + after - 2 * here).abs() > BEND

@@ -94,7 +94,8 @@ pub enum CopyContent {
     Colour,
     /// Two words per pixel: the colours of all pixels, then their 24-bit depths.
     ColourAndDepth,
-    /// One word per pixel: the upper 16 bits of its depth above its colour in 5, 6 and 5 bits.
+    /// One word per pixel. The upper 16 bits are the upper 16 bits of the depth. The lower 16 bits are the colour: 5
+    /// bits red, 6 bits green and 5 bits blue.
     Packed,
 }
 
@@ -120,7 +121,7 @@ impl CopyContent {
     }
 }
 
-/// Returns a pixel as one word: the upper 16 bits of its 24-bit depth above its colour in 5, 6 and 5 bits.
+/// Returns a pixel as one word: the upper 16 bits of its 24-bit depth, then its colour in 5, 6 and 5 bits.
 fn packed((colour, depth): (&Word, Word)) -> Word {
     (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }

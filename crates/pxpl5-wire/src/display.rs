@@ -11,7 +11,7 @@
 //! *period* is the time from one tick to the next.
 //!
 //! The machine owns any number of displays and uses only this interface. The first display is the machine's sync
-//! generator: its ticks reach the first graphics processor, and the length of a run is counted in its periods.
+//! generator. Its ticks reach the first graphics processor. The length of a run is counted in its periods.
 //!
 //! A crate that provides a display implements two traits: [`DisplayConfig`] for the parameters of a display, and
 //! [`Display`] for its boards. Timelines, traces, reports, pictures, films and pixel errors use only these traits.

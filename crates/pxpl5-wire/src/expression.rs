@@ -49,7 +49,7 @@ impl LinearLanes {
     /// Returns the expression of triangle `i`.
     ///
     /// # Panics
-    /// If `i` is not below [`LANES`].
+    /// Panics if `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize) -> Linear {
@@ -71,8 +71,8 @@ pub struct TriangleBatch<'a> {
     pub colours: Option<[u32; LANES]>,
 }
 
-/// The expression `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y), in 64-bit two's complement
-/// (sums wrap).
+/// The expression `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y). Sums wrap in 64-bit two's
+/// complement.
 ///
 /// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words per coefficient are
 /// assumed: 32 bits cannot hold both a screen's range and a small sphere's silhouette.

@@ -14,7 +14,7 @@
 //! sequence of its command kinds. Simulated times depend only on these two, because a SIMD array takes the same cycles
 //! for all data.
 //!
-//! **Not modelled:** routing headers and check words. The ring's overhead for each message stands for their cost.
+//! **Not modelled:** routing headers and check words. The ring adds a fixed overhead to each message in their place.
 //!
 //! Sources: TR94 (message length, regions), F89 (expressions, region size).
 

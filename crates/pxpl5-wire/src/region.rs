@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_message_says_of_a_region_is_looked_at_before_it_is_believed() {
+    fn the_region_of_a_message_is_checked_before_use() {
         let within = |grid: RegionGrid, region: u16| grid.rectangle_within(RegionId(region), 640, 480);
         let frame = RegionGrid::FRAME;
         assert_eq!(within(frame, 19), Some([512, 384, 128, 96]));

@@ -17,7 +17,7 @@ use pxpl5_wire::{PictureNumber, ViewNumber};
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] if a message arrives that is not the master's answer.
+/// Returns [`Fault::Protocol`] if a message arrives that is not the master's answer.
 pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,

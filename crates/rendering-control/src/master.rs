@@ -72,7 +72,7 @@ struct RegionMaster {
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit in memory.
+/// Returns [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit in memory.
 pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);

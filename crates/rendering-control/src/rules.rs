@@ -65,7 +65,7 @@ impl Completed {
     /// Returns true if EDIT of a frame may begin.
     ///
     /// Three things must be complete: SEND of the frame, TRANSFORM of the previous frame, and the work on older
-    /// drawings that still use buffers. The latter are RENDER of the 2nd previous eye (mono: frame) and COPY of the 3rd
+    /// drawings that still use buffers. This work is RENDER of the 2nd previous eye (mono: frame) and COPY of the 3rd
     /// previous eye.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
@@ -75,9 +75,9 @@ impl Completed {
 
     /// Returns true if TRANSFORM of an eye may begin.
     ///
-    /// TR94 requires that EDIT of the eye's frame has begun; this function requires that all slaves have finished EDIT.
-    /// It also requires RENDER of the 2nd previous eye and COPY of the 3rd previous eye. The function is not used for
-    /// the first eye of a frame: each slave begins that eye when its own edits are done.
+    /// All slaves must have finished EDIT of the eye's frame. (TR94 requires only that this EDIT has begun.) RENDER of
+    /// the 2nd previous eye and COPY of the 3rd previous eye must be complete. The function is not used for the first
+    /// eye of a frame, because each slave begins that eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)

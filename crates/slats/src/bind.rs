@@ -42,7 +42,7 @@ impl Binding {
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError::TooFewRenderers`] if a renderer would hold more than `contexts` regions.
+    /// Returns [`SlatsConfigError::TooFewRenderers`] if a renderer would hold more than `contexts` regions.
     pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];

@@ -37,7 +37,7 @@ impl SlatsConfig {
     ///
     /// # Errors
     ///
-    /// [`SlatsConfigError`] if the renderers have too few contexts for the regions, or if there is no graphics
+    /// Returns [`SlatsConfigError`] if the renderers have too few contexts for the regions, or if there is no graphics
     /// processor.
     pub fn check(&self) -> Result<Binding, SlatsConfigError> {
         if self.processors.is_empty() {

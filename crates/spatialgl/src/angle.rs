@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 /// negative of both values, a quarter turn exchanges them, and at 45 degrees they are equal.
 ///
 /// # Panics
-/// If the denominator is zero.
+/// Panics if the denominator is zero.
 #[must_use]
 pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
     // Split the angle into an octant and a rest. Odd octants run backwards.

@@ -36,8 +36,8 @@ pub struct BinLayout {
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// Only the planes that bound a region decide, so a primitive is in more bins. This is the first version of the
-    /// paper.
+    /// The test uses only the planes that bound a region, so a primitive gets into more bins. This is the first version
+    /// in the paper.
     TwoPlanes,
     /// All planes of the layout decide for each region.
     #[default]

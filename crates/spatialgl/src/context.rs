@@ -127,8 +127,8 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Range`] if the range exceeds the buffer. [`SpatialError::Setting`] if a point size or line width
-    /// is not above zero, or if the matrix is not finite.
+    /// Returns [`SpatialError::Range`] if the range exceeds the buffer. [`SpatialError::Setting`] if a point size or
+    /// line width is not above zero, or if the matrix is not finite.
     pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {

@@ -34,7 +34,7 @@ impl BitPlanes {
     /// Returns the words of a slice, row by row from the top. Each word holds eight pixels of a row.
     ///
     /// # Panics
-    /// If there is no such slice.
+    /// Panics if there is no such slice.
     #[must_use]
     pub fn slice(&self, k: u32) -> &[u32] {
         let words = words_of_slice(self.size);
@@ -44,7 +44,7 @@ impl BitPlanes {
     /// Returns the words of a slice for writing.
     ///
     /// # Panics
-    /// If there is no such slice.
+    /// Panics if there is no such slice.
     pub fn slice_mut(&mut self, k: u32) -> &mut [u32] {
         let words = words_of_slice(self.size);
         &mut self.words[k as usize * words..][..words]
@@ -53,7 +53,7 @@ impl BitPlanes {
     /// Returns the three bits of a pixel: bit 0 is red, bit 1 green and bit 2 blue.
     ///
     /// # Panics
-    /// If there is no such slice or pixel.
+    /// Panics if there is no such slice or pixel.
     #[must_use]
     pub fn pixel(&self, k: u32, x: u32, y: u32) -> u8 {
         pixel_of_word(self.slice(k)[(y * (self.size[0] / 8) + x / 8) as usize], x % 8)

@@ -20,7 +20,7 @@ impl Halftone {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
+    /// Returns [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
     pub fn bayer(size: u32) -> Result<Self, SpatialError> {
         require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
         // Repeat small matrices, so that eight thresholds can always be read at once.

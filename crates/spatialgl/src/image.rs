@@ -89,7 +89,7 @@ impl SliceImage {
     /// Returns red, green and blue of a pixel.
     ///
     /// # Panics
-    /// If the pixel lies outside the image.
+    /// Panics if the pixel lies outside the image.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 3] {
         let at = self.at(x, y);
@@ -139,7 +139,7 @@ impl SliceImage {
     /// Draws a fragment: sets the stencil bit of its pixel, and combines its colour with the pixel's colour.
     ///
     /// # Panics
-    /// If the pixel lies outside the image.
+    /// Panics if the pixel lies outside the image.
     pub fn draw_pixel(&mut self, x: u32, y: u32, colour: [u8; 3], combine: Combine) {
         self.put(x, y, colour, combine);
     }

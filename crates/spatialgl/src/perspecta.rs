@@ -9,7 +9,7 @@
 //! # Behaviour
 //!
 //! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the frame store that is not shown. A map makes the tiles dark that are not sent. A swap
+//!   ([`volume_messages`]) in the frame store that is not shown. A map makes all tiles dark that will not be sent. A swap
 //!   request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written slice
 //!   is therefore never shown.
 //! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_wire::display::Display), a period is a

@@ -123,6 +123,7 @@ impl SliceEye {
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
         let [kx, ky] = self.shear;
+        // A projection along s divides by 1. For an eye at distance d, w is the distance d - s.
         let rows = match self.eye {
             None => [
                 [1.0 / half[0], 0.0, kx / half[0], 0.0],

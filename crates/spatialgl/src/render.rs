@@ -55,7 +55,7 @@ impl VolumeConfig {
     /// 8 elements.
     ///
     /// # Panics
-    /// Never, because the matrix has a valid size.
+    /// Never panics, because the matrix has a valid size.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -81,7 +81,7 @@ impl VolumeConfig {
 ///
 /// # Errors
 ///
-/// [`SpatialError::Setting`] if the size of tiles or batches is invalid.
+/// Returns [`SpatialError::Setting`] if the size of tiles or batches is invalid.
 pub fn render_volume(
     display: &dyn SpatialDisplay,
     commands: &CommandBuffer,

@@ -19,7 +19,7 @@ pub const SCENE_REACH: f64 = 0.9;
 ///
 /// # Errors
 ///
-/// [`SpatialError`] if the scene has vertices that a recording cannot hold.
+/// Returns [`SpatialError`] if the scene has vertices that a recording cannot hold.
 pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
     let (centre, reach) = scene.bounding_sphere();
     // A scene of a single point is not scaled.

@@ -87,7 +87,7 @@ impl TimeModel {
     ///
     /// # Errors
     ///
-    /// [`ParameterError::OutOfLimits`] for the first number that the model cannot use.
+    /// Returns [`ParameterError::OutOfLimits`] for the first number that the model cannot use.
     pub fn new(timing: GpuTiming) -> Result<Self, ParameterError> {
         ParameterTable::check(&timing)?;
         Ok(Self { timing })

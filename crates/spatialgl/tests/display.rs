@@ -104,7 +104,7 @@ fn a_volume_is_shown_from_the_strobe_0_after_its_request() {
     for words in &messages(&planes) {
         deliver(&mut *display, words, Time(1_000));
     }
-    assert!(shows(&*display, &BitPlanes::dark([64, 48], 12)), "nobody has asked for it");
+    assert!(shows(&*display, &BitPlanes::dark([64, 48], 12)), "it was not requested");
     let at = display.tick(PeriodNumber(1));
     deliver(&mut *display, &swap_request(1), at);
     assert!(tick(&mut *display, 1).is_empty(), "a request at the instant itself comes too late");

@@ -69,7 +69,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn the_fast_path_draws_every_voxel_of_the_oracle(
+    fn the_fast_path_draws_every_voxel_of_the_reference_model(
         triangles in mesh(), clip in clips(), projection in projections(),
         combine in prop::sample::select(vec![Combine::Last, Combine::Max, Combine::Add]),
         bits in prop::option::of(2u32..12),

@@ -110,6 +110,7 @@ impl PredictorConfig {
         settings("predictor.start_turn", &start.turn);
         settings("predictor.start_turn_acceleration", &start.turn_acceleration);
         settings("predictor.horizon_ps", horizon_ps);
+        // The gate was no setting in earlier versions, so only changed numbers are written.
         gate.entries().iter().for_each(|entry| write_unusual(settings, "predictor.gate", entry));
     }
 }

@@ -51,7 +51,7 @@ pub struct PendulumRig {
 #[non_exhaustive]
 pub enum RigError {
     /// The tracker stopped reporting, or the host detected too few passes of the pendulum.
-    #[error("expected {expected} low points, the host saw {found}")]
+    #[error("expected {expected} low points, the host detected {found}")]
     TooFewPasses {
         /// Number of passes that the measurement needs.
         expected: usize,
@@ -84,7 +84,7 @@ impl PendulumRig {
     ///
     /// # Errors
     ///
-    /// [`RigError::TooFewPasses`] if the tracker stops reporting or the host detects fewer than `n` passes.
+    /// Returns [`RigError::TooFewPasses`] if the tracker stops reporting or the host detects fewer than `n` passes.
     pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<LowPointReport>, RigError> {
         let expected = n.max(1);
         // The dead time of the detector is a quarter of a swing.
@@ -105,8 +105,8 @@ impl PendulumRig {
     ///
     /// # Errors
     ///
-    /// [`RigError::NoLight`] if the screen never shows a frame, or if the two measurements have different numbers of
-    /// passes.
+    /// Returns [`RigError::NoLight`] if the screen never shows a frame, or if the two measurements have different
+    /// numbers of passes.
     pub fn compare(
         &self,
         tracker: &TrackerModel,

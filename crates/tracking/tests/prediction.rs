@@ -103,7 +103,7 @@ fn beyond_the_horizon_the_prediction_is_the_last_pose() {
 }
 
 #[test]
-fn when_the_patched_host_dies_predictors_go_on_with_the_last_pose() {
+fn after_a_crash_of_the_patched_host_predictors_keep_the_last_pose() {
     let tracker = TrackerModel::new(TrackerConfig::flock_of_birds_on_patched_host()).unwrap();
     let motion = Synthetic::recorded_use(1);
     for kind in PredictorKind::ALL {
@@ -136,7 +136,7 @@ fn reports_that_cannot_be_true_are_rejected_and_counted() {
 }
 
 #[test]
-fn a_jump_that_lasts_is_believed_after_five_reports() {
+fn a_lasting_jump_is_accepted_after_five_reports() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::fastrak());
         (0..10).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::at(DVec3::ZERO))));
@@ -149,7 +149,7 @@ fn a_jump_that_lasts_is_believed_after_five_reports() {
 }
 
 #[test]
-fn after_a_gap_old_velocities_are_forgotten() {
+fn after_a_gap_old_velocities_are_discarded() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::ideal());
         let pan = Pan::at(100.0);

@@ -91,7 +91,7 @@ fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_se
 }
 
 #[test]
-fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_judged() {
+fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_evaluated() {
     let tracker = model(TrackerConfig::fastrak());
     let base = PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config());
     let usual = training_seed(0);
@@ -125,7 +125,7 @@ fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune()
 /// A head swings for five seconds and is recorded 120 times per second. The tuning ignores the time after the last
 /// sample, for every behaviour at the end of the recording.
 #[test]
-fn a_recording_that_holds_its_end_teaches_what_moved_and_not_its_standing_still() {
+fn a_filter_is_tuned_only_on_the_moving_part_of_a_recording_that_holds_its_end() {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
     for sample in 0..600 {
         let time_s = f64::from(sample) / 120.0;

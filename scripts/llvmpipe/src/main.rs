@@ -1,10 +1,11 @@
-//! One eye's picture of a mesh by the OpenGL that is installed, in memory: Mesa's llvmpipe where LIBGL_ALWAYS_SOFTWARE is set. It says who
-//! draws in its first line. `scripts/speed` starts it beside our own renderer.
+//! A helper of `scripts/speed`: it draws one eye's picture of a mesh with the installed OpenGL, in memory. With
+//! `LIBGL_ALWAYS_SOFTWARE` set, OpenGL is Mesa's llvmpipe. The first line of the output names the OpenGL renderer.
 //!
-//! Standard input, little-endian: counts of vertices, triangles and views (u32 each); towards the light, ambient, diffuse (5 f32); of
-//! each vertex position and normal (6 f32) and colour (4 bytes); of each triangle its corners (3 u32); of each view its matrix from world to clip
-//! coordinates, by columns (16 f32). Each byte behind that has all views drawn once, 640 x 480, Gouraud, Z-buffered; the answer is a line with
-//! the CPU time of this process in seconds, and pixels covered in the last view.
+//! The input is little-endian. It begins with the numbers of vertices, triangles and views (u32 each). Then follow the
+//! direction to the light, ambient and diffuse light (5 f32). Each vertex has position and normal (6 f32) and a colour
+//! (4 bytes). Each triangle has three vertex indices (u32). Each view has its matrix from world to clip coordinates, by
+//! columns (16 f32). Each further byte draws all views once: 640 x 480 pixels, Gouraud shading, Z buffer. The program
+//! answers with one line: CPU time of this process in seconds, and number of covered pixels in the last view.
 
 use cpu_time::ProcessTime;
 use glow::HasContext;
@@ -83,7 +84,7 @@ fn context() -> Fallible<glow::Context> {
     Ok(gl)
 }
 
-/// What is drawn.
+/// The mesh and the views that are drawn.
 struct Picture {
     indices: i32,
     matrices: Vec<[f32; 16]>,
@@ -109,12 +110,14 @@ impl Picture {
             let place = |name| gl.get_uniform_location(program, name);
             gl.uniform_3_f32(place("towards_light").as_ref(), x, y, z);
             gl.uniform_2_f32(place("light").as_ref(), ambient, diffuse);
+            // Copy the mesh into buffers of OpenGL once.
             gl.bind_vertex_array(Some(gl.create_vertex_array()?));
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(gl.create_buffer()?));
             gl.buffer_data_u8_slice(glow::ARRAY_BUFFER, &held, glow::STATIC_DRAW);
             gl.bind_buffer(glow::ELEMENT_ARRAY_BUFFER, Some(gl.create_buffer()?));
             gl.buffer_data_u8_slice(glow::ELEMENT_ARRAY_BUFFER, &corners, glow::STATIC_DRAW);
             let stride = VERTEX_BYTES as i32;
+            // Describe the layout of a vertex: position, normal and colour.
             for (index, kind, normalised, offset) in
                 [(0, glow::FLOAT, false, 0), (1, glow::FLOAT, false, 12), (2, glow::UNSIGNED_BYTE, true, 24)]
             {
@@ -168,6 +171,7 @@ unsafe fn target(gl: &glow::Context) -> Fallible<()> {
 unsafe fn program(gl: &glow::Context) -> Fallible<glow::Program> {
     unsafe {
         let program = gl.create_program()?;
+        // Compile both shaders, then link them.
         for (kind, source) in [(glow::VERTEX_SHADER, VERTEX), (glow::FRAGMENT_SHADER, FRAGMENT)] {
             let shader = gl.create_shader(kind)?;
             gl.shader_source(shader, source);

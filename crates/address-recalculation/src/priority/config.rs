@@ -12,7 +12,8 @@ pxpl5_sim::parameters::parameter_table! {
         inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0, the second memory of table 1 would be as fast as the first";
         /// Rings of each memory relative to the next faster one. Memory 1 holds one ring.
         ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
-        /// Distance that determines when a memory is due: 0 to the border of its block, 1 to its nearest occupied cell.
+        /// Distance that determines when a memory is due. With 0, it is the distance to the border of the memory's
+        /// block. With 1, it is the distance to the memory's nearest occupied cell.
         to_held_cells: 0, "1", Assumed, 0..=1, "not printed; `pxpl5 arp interpretations` ranks both";
         /// Side of a cell.
         cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";

@@ -11,7 +11,8 @@ const FARTHEST_M: f64 = 1e6;
 /// Largest number of pieces that the triangles of one mesh may be cut into.
 const MOST_PIECES: f64 = 1e7;
 
-/// A vertex that a cut has created on the line between two other vertices. These can be results of cuts themselves.
+/// A vertex that a cut has created on the line between two other vertices. Each of these two can itself come from a
+/// cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutVertex {
     /// Indices of the line's two end vertices, in ascending order.
@@ -40,8 +41,8 @@ impl Segmentation {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. Also if an index has
-    /// no vertex, or if there could be more than ten million pieces.
+    /// Returns [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. The same
+    /// error is returned if an index has no vertex, or if there could be more than ten million pieces.
     pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, PriorityError> {
         check(vertices, triangles, side_m)?;
         let mut cutter = Cutter { side_m, vertices: vertices.to_vec(), cuts: Vec::new(), made: BTreeMap::new() };

@@ -53,7 +53,7 @@ impl RegionWarp {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the length of the falloff is not positive and finite.
+    /// Returns [`PriorityError`] if the length of the falloff is not positive and finite.
     pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));

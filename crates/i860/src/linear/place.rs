@@ -473,6 +473,7 @@ impl<'a> Placer<'a> {
     // ---- core half
 
     fn core_half(&mut self) -> String {
+        // The candidates are sorted by urgency. Without a candidate, the core half is empty.
         let Some(n) = self.candidates(false).into_iter().next() else { return "nop".to_owned() };
         let operation = &self.operations[n];
         let mnemonic = operation.name.mnemonic;
@@ -481,10 +482,12 @@ impl<'a> Placer<'a> {
             texts.push(format!("{offset}({})", self.core_text(base)));
         }
         self.note_memory(n);
+        // The sources must be released before the result gets a register, so that the result can reuse one of them.
         if operation.name.unit == Unit::Integer {
             self.release_integers(n);
         }
         let dest = operation.name.result.is_some().then(|| self.place(n, self.now + operation.name.latency));
+        // A prefetch is a load whose result is not used.
         let dest = if operation.name.unit == Unit::Prefetch { Some("r0".to_owned()) } else { dest };
         self.finish_issue(n);
         texts.extend(dest);

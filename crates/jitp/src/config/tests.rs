@@ -51,8 +51,8 @@ fn sizes_are_those_that_a_renderer_has() {
     for block in [3, 129] {
         assert_eq!(blocks(block).check(), Err(JitpConfigError::Size { expected: (4, 128), found: block }));
     }
-    let nobody = JitpConfig { slaves: Vec::new(), ..strips(64) };
-    assert_eq!(nobody.check(), Err(JitpConfigError::NoSlave));
+    let no_slave = JitpConfig { slaves: Vec::new(), ..strips(64) };
+    assert_eq!(no_slave.check(), Err(JitpConfigError::NoSlave));
 }
 
 #[test]

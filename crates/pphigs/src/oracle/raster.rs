@@ -18,7 +18,7 @@ use std::ops::Range;
 ///
 /// # Panics
 ///
-/// If the view has no eye.
+/// Panics if the view has no eye.
 #[must_use]
 pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: &Picture) -> IdealPicture {
     ideal_picture_of(list, |_| true, view, eye, picture)
@@ -29,7 +29,7 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
 ///
 /// # Panics
 ///
-/// If the view has no eye.
+/// Panics if the view has no eye.
 #[must_use]
 pub fn ideal_picture_of(
     list: &DisplayList,

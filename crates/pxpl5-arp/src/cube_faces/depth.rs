@@ -25,7 +25,7 @@ impl DepthRange {
     ///
     /// # Errors
     ///
-    /// [`DepthError`] unless 0 < near < far and far is finite.
+    /// Returns [`DepthError`] unless 0 < near < far and far is finite.
     pub fn new(near_m: f64, far_m: f64) -> Result<Self, DepthError> {
         let is_range = near_m > 0.0 && far_m > near_m && far_m.is_finite();
         if is_range { Ok(Self { near_m, far_m }) } else { Err(DepthError { near_m, far_m }) }

@@ -69,8 +69,8 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// True if points exactly on the edge count as inside. This is so if the inside has larger x, or if the edge is
-    /// horizontal and the inside has larger y.
+    /// True if points exactly on the edge count as inside. The inside of such an edge has larger x, or larger y if the
+    /// edge is horizontal.
     has_edge: bool,
     /// Factor that converts the constant part of a row's edge function to a number of columns.
     columns_of: f64,
@@ -94,7 +94,7 @@ impl Crossing {
     /// Restricts a range of columns to the columns inside this edge.
     ///
     /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
-    /// exact column. Its rounded value rises or falls monotonically along a row.
+    /// exact column. The rounded value of the edge function rises or falls monotonically along a row.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
         // A horizontal edge accepts the whole row or nothing.

@@ -56,7 +56,7 @@ fn pictures(text: &mut String) {
          ![Tears](pictures/arp-tears.png)\n\nThe scene is cut and not warped, and the memories are cleared to white. Gaps appear between pieces that were drawn\n\
          from different positions.\n\n\
          ![Warped](pictures/arp-warped.png)\n\nThis picture shows the same frame with warping.\n\n\
-         ![Errors](pictures/arp-error.png)\n\nThe picture shows the pixel offset of each pixel. The offset arises because the memory was drawn from another position.\n\
+         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel. The error arises because the memory was drawn from another position.\n\
          The scale ends at two pixels.\n",
     );
 }
@@ -71,7 +71,7 @@ fn head(text: &mut String, rows: &[Row]) {
         "# Address recalculation and priority rendering: the papers' figures\n\n\
          The command `pxpl5 arp figures --write docs/address-recalculation.md` generates this file. A test fails if the file is out of date.\n\n\
          The experiments use the scene `gallery` with a plan of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows the path of the\n\
-         scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal. The column *standing* has these values:\n\n\
+         scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal. The column *provenance* has these values:\n\n\
          - *checked*: The row is simulated, and no number was fitted.\n\n\
          - *fitted*: One number was chosen to reproduce this row, and this row only.\n\n\
          - *depends on the interpretation*: The row is met if the interval of all interpretations contains the printed number.\n\n\
@@ -91,7 +91,7 @@ fn head(text: &mut String, rows: &[Row]) {
 #[must_use]
 pub fn table(rows: &[Row]) -> String {
     let mut text =
-        "| | # | statement | published | ours | unit | error | standing | |\n|---|---|---|---|---|---|---|---|---|\n"
+        "| | # | statement | published | ours | unit | error | provenance | |\n|---|---|---|---|---|---|---|---|---|\n"
             .to_owned();
     rows.iter().for_each(|row| line(&mut text, row));
     text
@@ -177,6 +177,7 @@ pub fn interpretations(all: &Interpretations) -> String {
          root mean square over these three memories. For the column *left out*, each rate is predicted with the side that fits the other two\n\
          rates best. The rules are ranked by their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
         .to_owned();
+    // The table has one column for each hall and path.
     let situations = Situation::ALL.map(Situation::text).join(" | ");
     let _ = writeln!(
         text,
@@ -201,6 +202,7 @@ pub fn interpretations(all: &Interpretations) -> String {
 /// Returns two results as Markdown: the best single fit, and the prediction of each update rate from the other rates.
 fn best_of_all(all: &Interpretations) -> String {
     let mut text = String::new();
+    // The best fit of all combinations of rules, hall and path.
     let every = all.ranked.iter().flat_map(|ranked| &ranked.tried);
     if let Some(best) = every.min_by(|a, b| a.error_percent.total_cmp(&b.error_percent)) {
         let Trial { cell_m, rates_hz } = best.best;
@@ -286,6 +288,7 @@ fn conservation(text: &mut String, all: &Experiments) {
         memories.map(|memory| memory.segments).collect::<Vec<f64>>()
     });
     let [cut, uncut] = SEGMENTS.map(|segments| segments.map(|count| count as f64));
+    // Mean number of draws per second that a section needs at the printed rates.
     let per_section = |segments: &[f64]| {
         let draws: f64 = segments.iter().zip(RATES_HZ).map(|(segments, rate)| segments * rate).sum();
         draws / segments.iter().sum::<f64>()
@@ -307,6 +310,7 @@ fn conservation(text: &mut String, all: &Experiments) {
         ours[0].iter().sum::<f64>(),
         ours[1].iter().sum::<f64>()
     );
+    // The second constraint compares sums over the fastest memories.
     let up_to = |segments: &[f64], memory: usize| segments[..=memory].iter().sum::<f64>();
     for memory in 0..4 {
         let [a, b, c, d] = [&cut[..], &uncut[..], &ours[0], &ours[1]].map(|segments| up_to(segments, memory));

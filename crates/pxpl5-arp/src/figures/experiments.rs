@@ -94,7 +94,7 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] if a scene or a number is invalid. The built-in ones are valid.
+    /// Returns [`ExperimentError`] if a scene or a number is invalid. The built-in ones are valid.
     pub fn run() -> Result<Self, ExperimentError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
@@ -198,8 +198,8 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of size to distance above which growth on the screen decides the validity, for one interpretation of both
-/// words.
+/// Ratio of size to distance above which growth on the screen decides the validity. The paper does not define "size"
+/// and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle that is allowed to change: of the diameter or of the radius.
@@ -215,8 +215,8 @@ pub struct SizeLimit {
 /// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
 /// sphere.
 ///
-/// The interpretations differ in the angle that is allowed to change: the diameter by the threshold, the radius by the
-/// threshold, or the radius by twice the threshold.
+/// The interpretations differ in the limited angle. The threshold limits the change of the diameter, or that of the
+/// radius, or twice the threshold limits that of the radius.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];

@@ -23,7 +23,7 @@ const TENTHS: std::ops::RangeInclusive<u32> = 15..=40;
 ///
 /// # Errors
 ///
-/// Same as [`World::new`].
+/// Fails in the same cases as [`World::new`].
 pub fn policy_rates_hz(
     scene: &Scene,
     path: &Walk,
@@ -61,7 +61,7 @@ pub(super) fn rates_hz(
 ///
 /// # Errors
 ///
-/// Same as [`policy_rates_hz`].
+/// Fails in the same cases as [`policy_rates_hz`].
 pub fn fitted_cell_m(
     scene: &Scene,
     path: &Walk,

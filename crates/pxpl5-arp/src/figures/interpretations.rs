@@ -169,7 +169,7 @@ impl Tried {
     ///
     /// # Errors
     ///
-    /// Same as [`policy_rates_hz`].
+    /// Fails in the same cases as [`policy_rates_hz`].
     pub fn of(rules: Rules, situation: Situation) -> Result<Self, ExperimentError> {
         let trial = |cell_m| Ok(Trial { cell_m, rates_hz: situation.rates(&rules, cell_m)? });
         // First pass with coarse steps.
@@ -207,7 +207,7 @@ impl Interpretations {
     ///
     /// # Errors
     ///
-    /// Same as [`policy_rates_hz`].
+    /// Fails in the same cases as [`policy_rates_hz`].
     pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;
@@ -233,8 +233,8 @@ impl Interpretations {
 
     /// Returns the rules of this project with their rank, counted from 1.
     ///
-    /// With a *cascade*, an update of a memory makes all faster memories due. The rank is among the rules that agree
-    /// with this project's rules in having or lacking a cascade.
+    /// With a *cascade*, an update of a memory makes all faster memories due. The ranking has two parts: rules with a
+    /// cascade, and rules without. The rank counts only within the part that contains this project's rules.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);

@@ -12,7 +12,7 @@ use glam::DVec3;
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] if the lens is invalid.
+/// Returns [`ExperimentError`] if the lens is invalid.
 pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     let config = ArpConfig { lens, ..ArpConfig::IDEAL };
     let config =

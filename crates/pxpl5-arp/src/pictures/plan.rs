@@ -166,7 +166,7 @@ pub fn updates_svg(tally: &WalkTally, frames: std::ops::Range<u64>) -> String {
     }
     let _ = writeln!(
         svg,
-        "<text x=\"8\" y=\"{:.0}\">Frames of 1/60 s; a bar: drawn and shown; dashes: cells dealt anew; red: not whole at its retrace.</text>",
+        "<text x=\"8\" y=\"{:.0}\">Frames of 1/60 s; bar: an update that was drawn and shown; dashes: new assignment of cells; red: not complete at its retrace.</text>",
         height - 8.0
     );
     svg.push_str("</svg>\n");

@@ -32,7 +32,7 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Display`] if the lens is invalid.
+    /// Returns [`ExperimentError::Display`] if the lens is invalid.
     pub fn seen(&self) -> Result<RgbImage, ExperimentError> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
@@ -41,7 +41,7 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Same as [`Views::seen`].
+    /// Fails in the same cases as [`Views::seen`].
     pub fn memories(&self) -> Result<RgbImage, ExperimentError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
@@ -61,7 +61,7 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Same as [`Views::seen`].
+    /// Fails in the same cases as [`Views::seen`].
     pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, ExperimentError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();

@@ -92,9 +92,9 @@ fn text(comparison: &ArpComparison) -> String {
         let _ = writeln!(text, "{}", cells.collect::<String>().trim_end());
     }
     text.push_str(
-        "\ntears: angles between both directions of a vertex that two memories share (half of all, 95 %, the widest), in texels of 90 degrees\n\
-         over a face's edge; stretch: what warping turns; eye age: from where memories were drawn, mean; changes: cells dealt anew, or\n\
-         objects that changed memories.\n",
+        "\ntears: angles between the two directions in which two memories draw a shared vertex (median, 95 %, widest), in texels (90 degrees\n\
+         divided by the texels of a face's edge); stretch: angles by which warping moves vertices; eye age: mean distance from the position\n\
+         for which a memory was drawn; changes: new assignments of cells, or objects that changed their memory.\n",
     );
     text
 }

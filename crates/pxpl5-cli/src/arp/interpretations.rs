@@ -7,7 +7,7 @@ use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 
 /// Rank the interpretations of the questions that the paper leaves open about table 1 (rings, distances, cascade, hall,
-/// path); each rate is left out in turn.
+/// path). Each rate is left out in turn.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp interpretations

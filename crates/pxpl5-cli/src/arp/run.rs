@@ -24,7 +24,7 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
     /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the cube faces of all display
-    /// memories, and what the eye sees through its lens and (up to 170 degrees) without a lens. Other pictures show the
+    /// memories, and the view of the eye with its lens and (up to 170 degrees) without a lens. Other pictures show the
     /// memory chosen at each pixel, errors, cells from above, cuts as wires, and updates. The last ones show the scene
     /// torn at cuts, warped, and without cuts.
     #[arg(long, value_name = "DIR")]
@@ -114,17 +114,17 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     let priority = &report.priority;
     // Totals over all memories.
     let rows = [
-        ("segments drawn a second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
-        ("triangles drawn a second", format!("{:.0}", outcome.triangles_per_s())),
-        ("cells dealt anew", or_none(priority.redeals.map(|n| n.to_string()))),
+        ("segments drawn per second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
+        ("triangles drawn per second", format!("{:.0}", outcome.triangles_per_s())),
+        ("new assignments of cells", or_none(priority.redeals.map(|n| n.to_string()))),
         ("objects that changed memory", or_none(priority.moved_objects.map(|n| n.to_string()))),
-        ("cuts unwarped, texels", widths(report.tears_px.before)),
-        ("cuts as drawn, texels", widths(report.tears_px.after)),
-        ("stretched by warping, texels", widths(report.tears_px.stretch)),
+        ("tears without warping, texels", widths(report.tears_px.before)),
+        ("tears as displayed, texels", widths(report.tears_px.after)),
+        ("moved by warping, texels", widths(report.tears_px.stretch)),
         ("pipeline", format!("{} ns, before each {}", report.pipeline_ns, report.latch)),
         ("from latch to light", or_none(report.rotation_latency_ms.total.map(|ms| format!("{ms:.3} ms, mean")))),
-        ("from step to light, by memory", steps(report)),
-        ("bytes of a memory", report.memories.first().map_or(0, |memory| memory.bytes).to_string()),
+        ("from eye position to light", steps(report)),
+        ("bytes per memory", report.memories.first().map_or(0, |memory| memory.bytes).to_string()),
     ];
     text.push('\n');
     for (name, value) in rows {

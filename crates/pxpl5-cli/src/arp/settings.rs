@@ -40,7 +40,7 @@ pub(super) struct WalkArgs {
     /// default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
-    /// Unit of scan-out before which the head's orientation is read: field, line or pixel; default field.
+    /// How often the display reads the head's orientation: before each field, line or pixel; default field.
     #[arg(long, value_name = "LATCH")]
     latch: Option<String>,
     /// Lens before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel;

@@ -56,7 +56,7 @@ fn over_prediction(comparison: &Comparison) -> String {
     let axes = axes(
         comparison,
         "Error over prediction interval",
-        "mean from the newest measurement to the instant drawn for, ms",
+        "mean prediction interval, ms",
         "mean error, px (interval of the seeds' means; hollow: pictures not shown)",
     );
     points(comparison, &axes, |row| row.prediction_interval_ms.mean)

@@ -25,7 +25,7 @@ pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<
     }
     let Gallery { pictures, .. } = gallery;
     let page = PageTable {
-        name: format!("{}: what the first eye sees at the end", comparison.scene),
+        name: format!("{}: pictures seen by the first eye at the end of the run", comparison.scene),
         about: about(comparison),
         pictures,
         ..PageTable::default()
@@ -47,8 +47,8 @@ impl<'a> Gallery<'a> {
         let Some(ideal) = last.should_be.as_ref().filter(|ideal| !self.ideals.contains(ideal)) else { return Ok(()) };
         self.ideals.push(ideal);
         let name = format!("picture-should-be-{}.png", self.ideals.len());
-        let caption = format!("as it should be in the middle of the last period, in the shading of {}", row.pipeline);
-        self.add(&name, caption, ideal, [("picture", "as it should be".to_owned())])
+        let caption = format!("ideal picture in the middle of the last period, with the shading of {}", row.pipeline);
+        self.add(&name, caption, ideal, [("picture", "ideal".to_owned())])
     }
 
     fn seen(&mut self, row: &ComparisonRow, last: &LastPicture) -> Result<(), CliError> {
@@ -77,14 +77,14 @@ impl<'a> Gallery<'a> {
 fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     let mut caption = row.pipeline.clone();
     if !last.is_complete {
-        caption.push_str(": not complete, it was not there in time");
+        caption.push_str(": not complete in time");
         return caption;
     }
     if row.head_to_light_ms.mean.is_finite() {
         caption.push_str(&format!(": {:.1} ms from head to light", row.head_to_light_ms.mean));
     }
     if let Some(error) = row.by_field.last() {
-        caption.push_str(&format!(", {:.2} px beside its place in the last field", error.mean_px));
+        caption.push_str(&format!(", pixel error {:.2} px in the last field", error.mean_px));
     }
     caption
 }

@@ -34,12 +34,12 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text.push_str(&best(comparison));
     text.push_str(&causes(comparison));
     text.push_str(
-        "\nto light: from the head's pose to the light of the picture's middle; turn: the same of an orientation alone, which a display with\n\
-         faces looks up at scan-out; predicts: from the newest measurement to the instant that a picture is drawn for; updates: new pictures a\n\
-         second, of frameless rendering passes over all blocks of the screen (docs/results.md); interval: where the mean lies, by the seeds; n:\n\
-         evaluated pixels; best with: the predictor with the least error of the first seed; - : no sample was evaluated; ! : pictures that\n\
-         were due were not shown, so the error is of the others; + : evaluated from a later field on than the other rows. Rows with a\n\
-         mark are never the best.\n",
+        "\nto light: time from the head's pose until the middle of the picture is lit; turn: the same for an orientation that a display with\n\
+         faces reads at scan-out; predicts: time from the newest measurement to the instant for which a picture is drawn; updates: new\n\
+         pictures per second (frameless rendering: passes over all blocks of the screen, docs/results.md); interval: range of the mean, from\n\
+         the seeds; n: evaluated pixels; best with: the predictor with the least error for the first seed; - : no sample was evaluated;\n\
+         ! : some due pictures were not shown, so the error covers only the others; + : evaluated from a later field on than the other\n\
+         rows. Rows with a mark are never the best.\n",
     );
     text
 }

@@ -69,25 +69,31 @@ impl Pane {
 
 /// Forms and explanations of all commands. A test compares them with the table in the guide.
 pub(super) const HELP: [(&str, &str); 19] = [
-    ("run", "to the end, or until code comes to a breakpoint"),
-    ("run to TIME", "12.5ms, 300us, 40ns, or +1ms from now"),
-    ("run to field N", "to the retrace that begins it"),
-    ("run until CONDITION", "swap; region; fifo R >= N; inbox GP >= N; channels >= N; waits BOARD for WORDS"),
-    ("next BOARD", "to the next event of host, gp N, renderer N, display N or ring"),
-    ("step [N] [event|line|field]", "one event, or so many; lines and fields of the first display"),
-    ("show time|boards|waits|ring|timeline", "a part of the machine"),
-    ("show BOARD", "what one board does"),
-    ("break [PLACE]", "stop where an i860 comes to a label or address (--level cycle); without one: list"),
-    ("delete PLACE", "forget a breakpoint"),
-    ("registers BOARD", "of an i860, as the last call or breakpoint left them"),
-    ("disassemble BOARD [PLACE [N]]", "N instructions of the code of a board"),
-    ("memory BOARD PLACE [N]", "N words of its memory"),
-    ("pixel R X Y", "the fields of a pixel's memory in renderer R, and whether it is enabled"),
-    ("enabled R", "which pixels of renderer R are enabled, as a map"),
-    ("seen SURFACE [FILE.png]", "what the beam has drawn so far, before the eye left or right"),
-    ("ideal SURFACE [FILE.png]", "what should be seen there now"),
-    ("help", "this list"),
-    ("quit", "leave"),
+    ("run", "run to the end, or until code reaches a breakpoint"),
+    ("run to TIME", "run to a time: 12.5ms, 300us, 40ns, or +1ms from now"),
+    ("run to field N", "run to the retrace at which field N begins"),
+    (
+        "run until CONDITION",
+        "run until: swap; region; fifo R >= N; inbox GP >= N; channels >= N; waits BOARD for WORDS",
+    ),
+    ("next BOARD", "run to the next event of host, gp N, renderer N, display N or ring"),
+    ("step [N] [event|line|field]", "run one or N events; lines and fields are those of the first display"),
+    ("show time|boards|waits|ring|timeline", "show one part of the machine"),
+    ("show BOARD", "show the state of one board"),
+    (
+        "break [PLACE]",
+        "stop when an i860 reaches a label or address (--level cycle); without a place: list breakpoints",
+    ),
+    ("delete PLACE", "remove a breakpoint"),
+    ("registers BOARD", "registers of an i860 after the last call, or at the last breakpoint"),
+    ("disassemble BOARD [PLACE [N]]", "show N instructions of the code of a board"),
+    ("memory BOARD PLACE [N]", "show N words of the memory of a board"),
+    ("pixel R X Y", "show the fields of a pixel's memory in renderer R, and if the pixel is enabled"),
+    ("enabled R", "show a map of the enabled pixels of renderer R"),
+    ("seen SURFACE [FILE.png]", "show or save the picture so far of the left or right eye"),
+    ("ideal SURFACE [FILE.png]", "show or save the ideal picture of this surface now"),
+    ("help", "show this list"),
+    ("quit", "leave the debugger"),
 ];
 
 /// Splits a text into commands at line ends and semicolons. Comments and empty commands are left out.
@@ -152,7 +158,7 @@ fn unknown(name: &str, text: &str) -> String {
 fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
     match rest {
         [] => Ok(board),
-        rest => Err(format!("expected nothing behind {board}, found `{}`", rest.join(" "))),
+        rest => Err(format!("expected nothing after {board}, found `{}`", rest.join(" "))),
     }
 }
 

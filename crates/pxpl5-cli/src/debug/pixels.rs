@@ -70,14 +70,14 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
 /// Describes the picture that the display's beam has drawn so far. Saves the picture if a file is given.
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
-    let picture = stepper.seen(id).ok_or_else(|| format!("nothing can be said of {label}"))?;
+    let picture = stepper.seen(id).ok_or_else(|| format!("{label} has no picture yet"))?;
     describe_picture(&picture, label, file)
 }
 
 /// Describes the ideal picture at the current time. Saves the picture if a file is given.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
-    let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("there is no ideal picture of {label}"))?;
+    let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("{label} has no ideal picture"))?;
     describe_picture(ideal.image(), label, file)
 }
 
@@ -86,7 +86,7 @@ fn describe_picture(picture: &RgbImage, label: &str, file: Option<&str>) -> Resu
     // The pixel at the top left serves as the background colour.
     let background = picture.get_pixel(0, 0);
     let drawn = picture.pixels().filter(|pixel| *pixel != background).count();
-    let mut text = format!("{label}: {width} x {height} pixels, {drawn} other than that of the left top\n");
+    let mut text = format!("{label}: {width} x {height} pixels, {drawn} differ from the upper left pixel\n");
     if let Some(file) = file {
         picture.save_with_format(file, image::ImageFormat::Png).map_err(|error| format!("{file}: {error}"))?;
         let _ = writeln!(text, "written to {file}");

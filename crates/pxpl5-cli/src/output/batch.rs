@@ -201,7 +201,7 @@ fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     match name.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error),
-        Ok(found) if !found.is_file() => return Err(io::Error::other("it has become something else than a file")),
+        Ok(found) if !found.is_file() => return Err(io::Error::other("it is no longer a regular file")),
         Ok(found) => fs::set_permissions(next, found.permissions())?,
     }
     let old = beside(name, "old");

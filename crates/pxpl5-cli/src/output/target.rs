@@ -46,7 +46,7 @@ fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
         let Ok(next) = path.read_link() else { return Ok(path) };
         path = path.parent().unwrap_or(Path::new("")).join(next);
     }
-    Err(place.refused(&path, &"its links lead in a circle"))
+    Err(place.refused(&path, &"its symbolic links form a loop"))
 }
 
 /// Returns true if `found` describes the same file, pipe or device as standard output.

@@ -54,7 +54,7 @@ impl Question {
         self.check_names(results)?;
         let counted: Vec<&Row> = results.rows.iter().filter(|row| self.counts(row)).collect();
         if counted.is_empty() {
-            return Err(CliError::usage("no row is left by --where"));
+            return Err(CliError::usage("no row matches --where"));
         }
         let mut places: BTreeMap<(Vec<String>, String), usize> = BTreeMap::new();
         let mut found: Vec<(Vec<String>, Value, Vec<&Row>)> = Vec::new();

@@ -50,8 +50,8 @@ impl<'a> Files<'a> {
     pub(crate) fn warn_if_unlisted(&self) {
         if self.manifest.is_none() {
             self.warn(&format!(
-                "{}: there is no {MANIFEST_FILE} that says which pictures and tables are of this run; they are left out. Run it again to \
-                 have them",
+                "{}: the folder has no {MANIFEST_FILE}, so the pictures and tables of the run are not known and are left out. \
+                 Run the command again to get them",
                 self.folder.display()
             ));
         }

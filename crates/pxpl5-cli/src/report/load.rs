@@ -58,7 +58,7 @@ fn pictures_of(files: &Files<'_>, prefix: &str) -> Vec<PagePicture> {
     let names = files.names().filter_map(|name| Some((name, name.strip_prefix(prefix)?.strip_suffix(".png")?)));
     let pictures = names.filter_map(|(name, surface)| {
         let (surface, caption) = match surface.strip_suffix(INCOMPLETE) {
-            Some(surface) => (surface, ": not complete, it was not there in time"),
+            Some(surface) => (surface, ": not complete in time"),
             None => (surface, ""),
         };
         let eye = if ["left", "right"].contains(&surface) { " eye" } else { "" };

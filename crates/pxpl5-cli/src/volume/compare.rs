@@ -128,9 +128,9 @@ fn text(comparison: &VolumeComparison) -> String {
         let _ = writeln!(text, "{}", laid_out(row.iter().map(String::as_str), &widths));
     }
     text.push_str(
-        "\nover exact: lit pixels over those of the exact clip with the same projection, from 8 to 32 px and from 256 to 344 px of the axis;\n\
-         connected: part of the mesh's intersections with the slices that is shown; volumes/s: the model's, one part after the\n\
-         other and overlapped. More than one sample is what the paper rejects as too dear; connected is beyond the paper.\n",
+        "\nover exact: lit pixels divided by those of the exact clip with the same projection, at 8 to 32 px and at 256 to 344 px from the axis;\n\
+         connected: share of the mesh's intersections with the slices that is shown; volumes/s: rate of the model, with its parts one after\n\
+         the other and at the same time. The paper rejects more than one sample as too expensive; connected is beyond the paper.\n",
     );
     text
 }

@@ -83,8 +83,8 @@ fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError
 
 fn text(figures: &Figures) -> String {
     let mut text = format!(
-        "{:<9} {:>16} {:>16}  {:<9} {:>9}  {:<9} {:<6} {}\n",
-        "#", "expected", "model", "unit", "error", "standing", "", "what"
+        "{:<9} {:>16} {:>16}  {:<9} {:>9}  {:<10} {:<6} {}\n",
+        "#", "expected", "model", "unit", "error", "provenance", "", "what"
     );
     figures.figures.iter().for_each(|row| line(&mut text, row));
     text.push_str("\nStated without numbers:\n");
@@ -105,7 +105,7 @@ fn line(text: &mut String, row: &FigureRow) {
     let mark = if row.is_met { "met" } else { "MISSED" };
     let _ = writeln!(
         text,
-        "{:<9} {:>16} {:>16}  {:<9} {:>+8.2}%  {:<9} {mark:<6} {}{scene}",
+        "{:<9} {:>16} {:>16}  {:<9} {:>+8.2}%  {:<10} {mark:<6} {}{scene}",
         figure.id,
         compact(figure.published),
         compact(figure.computed),

@@ -115,6 +115,7 @@ fn errors_svg(study: &HeadStudy, motion: &str) -> String {
         across: "time, s".to_owned(),
         up: "angle seen by the eye, degrees".to_owned(),
     };
+    // A missing value is a gap in the curve.
     let curve = |name: &str, value: &dyn Fn(&HeadSample) -> Option<f64>| Curve {
         name: name.to_owned(),
         points: study.samples.iter().map(|sample| (sample.time_s, value(sample).unwrap_or(f64::NAN))).collect(),
@@ -139,8 +140,8 @@ fn text(study: &HeadStudy, motion: &str, out: &Path) -> String {
     let own = study.volume_latency_ms.map_or_else(|| "unknown".to_owned(), |ms| format!("{ms:.1} ms"));
     format!(
         "{} before a head that moves as {motion}, {}\n\
-         head-mounted display, {:.1} ms late ({}): {:.3} degrees on the mean, {:.1} of its pixels, {:.1} mm\n\
-         volume: voxels {:.4} degrees off on the mean, {:.3} mm; a dither cell {:.3} degrees; what changes in it shows {own} later\n\
+         head-mounted display, {:.1} ms late ({}): mean error {:.3} degrees, {:.1} of its pixels, {:.1} mm\n\
+         volume: mean error of voxels {:.4} degrees, {:.3} mm; a dither cell {:.3} degrees; latency of changes {own}\n\
          {}: report.json, errors.csv, errors.svg, eyes.png.\n",
         study.scene,
         count_of(study.samples.len(), "instant"),

@@ -23,8 +23,8 @@ use std::path::PathBuf;
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning,
-    /// the tiles of all batches, and a picture as an eye sees the volume.
+    /// Write into this folder: report.json, slices.csv and pictures. The pictures are the sheet of all slices, slice 0
+    /// before and after halftoning, the tiles of all batches, and the volume as an eye sees it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.
@@ -195,11 +195,11 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
         ),
         ("lit voxels", report.lit_voxels.to_string()),
         ("connected", format!("{:.1} %", report.connected_percent)),
-        ("outside the volume", format!("{} with a corner there", count_of(report.outside_volume, "primitive"))),
-        ("model of time", model_of_time(report)),
-        ("volumes a second", volumes_a_second(report)),
+        ("outside the volume", format!("{} with a corner outside", count_of(report.outside_volume, "primitive"))),
+        ("modelled times", model_of_time(report)),
+        ("volumes per second", volumes_a_second(report)),
         ("volume hash", report.volume_hash.clone()),
-        ("drawn here in", format!("{:.2} s", report.host_seconds)),
+        ("host time", format!("{:.2} s", report.host_seconds)),
     ];
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<20} {value}");

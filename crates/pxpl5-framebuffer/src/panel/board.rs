@@ -35,7 +35,7 @@ pub struct Panel {
 ///
 /// # Errors
 ///
-/// [`DisplayError`] if the number of ports is not a multiple of the number of boards.
+/// Returns [`DisplayError`] if the number of ports is not a multiple of the number of boards.
 pub(super) fn build(
     name: &'static str,
     numbers: PanelNumbers,

@@ -93,16 +93,19 @@ impl PanelNumbers {
             Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
         };
         let size = u64::from(REGION_SIZE);
+        // Firmware numbers regions with a fixed number of bits.
         let regions = self.width.div_ceil(size) * self.height.div_ceil(size);
         if regions > MOST_REGIONS {
             let expected = format!("at most {MOST_REGIONS} regions of {size} x {size}, as many as firmware can number");
             return wrong("width", expected, format!("{regions} ({} x {} pixels)", self.width, self.height));
         }
+        // A pixel is driven again in the next period, so it cannot shine longer than one period.
         let period_us = US_PER_S / self.refresh_hz;
         if self.persistence_us > period_us {
             let expected = format!("0 to {period_us}, a period of {} Hz", self.refresh_hz);
             return wrong("persistence_us", expected, self.persistence_us.to_string());
         }
+        // Both fields of an interlaced picture have equally many lines.
         if self.interlace == 1 && !self.height.is_multiple_of(2) {
             return wrong("height", "an even number of interlaced lines".to_owned(), self.height.to_string());
         }

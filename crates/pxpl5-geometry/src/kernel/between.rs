@@ -7,8 +7,8 @@ use super::Kernel;
 
 /// Number of words of a triangle's record for two views.
 ///
-/// The record holds four words, then the corners in the first view and in the second view. The four words are: a flag
-/// that is set if both views have the triangle on the screen, the least y, the greatest y, and a free word.
+/// The record holds four words, then the corners in the first view and in the second view. The four words are a flag,
+/// the least y, the greatest y, and a free word. The flag is set if both views have the triangle on the screen.
 pub const ENDS_WORDS: usize = 28;
 
 /// Number of words that a triangle's record has for each view.

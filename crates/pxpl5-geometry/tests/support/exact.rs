@@ -1,8 +1,9 @@
 //! Exact geometry in integers of any length, from the same 32-bit floating-point input as the pipeline.
 //!
 //! Every f32 is an integer times 2^-149, so no division is needed if all clip coordinates of a triangle have a common
-//! scale. Coverage, depth and colour at a pixel are ratios of integers that are linear in the pixel's coordinates
-//! (homogeneous rasterization, Olano and Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997).
+//! scale. Coverage, depth and colour at a pixel are ratios of integers that are linear in the pixel's coordinates. The
+//! method is homogeneous rasterization (Olano and Greer, *Triangle scan conversion using 2D homogeneous coordinates*,
+//! 1997).
 
 use super::{HEIGHT, WIDTH};
 use glam::{Mat4, Vec3};

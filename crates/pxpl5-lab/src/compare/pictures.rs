@@ -20,11 +20,11 @@ use tracking::view::HmdView;
 pub struct EdgePictures {
     /// Picture drawn for one instant. The edge is vertical.
     pub conventional: RgbImage,
-    /// The conventional picture as an eye sees it that turns while the beam runs. The edge is slanted.
+    /// The conventional picture as seen by an eye that turns during the scan. The edge is slanted.
     pub conventional_seen: RgbImage,
     /// Picture in which each line is drawn for the instant of its display. The edge is slanted.
     pub just_in_time: RgbImage,
-    /// The just-in-time picture as an eye sees it that turns while the beam runs. The edge is vertical.
+    /// The just-in-time picture as seen by an eye that turns during the scan. The edge is vertical.
     pub just_in_time_seen: RgbImage,
 }
 

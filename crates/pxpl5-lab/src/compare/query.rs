@@ -266,7 +266,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
         Some(due) => format!(
             "cannot draw the scene: of {due} pictures due none was complete in time, so the scene is too heavy{could}"
         ),
-        None => format!("no picture was shown behind start-up in {fields} fields: simulate more fields{could}"),
+        None => format!("no picture was shown after the warm-up in {fields} fields: simulate more fields{could}"),
     }
 }
 

@@ -166,7 +166,7 @@ impl ComparisonRow {
         let is_reference = contender.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
-            "none: every pixel's own moment, computed and not timed"
+            "none: computed for the instant of each pixel, without a machine"
         } else {
             pipeline.latency_definition()
         };

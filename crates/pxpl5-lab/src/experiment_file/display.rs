@@ -40,7 +40,7 @@ const KEYS: [NumberKey; 12] = [
     },
     NumberKey {
         words: &[("down", 0), ("up", 1), ("right", 2), ("left", 3)],
-        ..whole("direction", "the way of a rolling scan: down, up, right or left")
+        ..whole("direction", "direction of a rolling scan: down, up, right or left")
     },
     NumberKey {
         parameter: "active_permille",
@@ -50,12 +50,12 @@ const KEYS: [NumberKey; 12] = [
     NumberKey {
         parameter: "persistence_us",
         per_unit: 1e3,
-        ..whole("persistence_ms", "time for which a pixel is driven in each scan, at most a period")
+        ..whole("persistence_ms", "time for which a pixel shines in each scan, at most a period")
     },
     NumberKey {
         parameter: "response_us",
         per_unit: 1e3,
-        ..whole("response_ms", "time constant with which a pixel follows")
+        ..whole("response_ms", "time constant of a pixel's brightness")
     },
     whole("ports", "ports of a board on the ring, 1 to 8"),
     whole("word_ns", "time of one word at a port"),

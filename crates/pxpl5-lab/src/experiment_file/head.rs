@@ -70,7 +70,7 @@ impl HeadChoice {
     /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
         let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
-        let how = "how the head moves, such as head.motion = \"pan:200\"";
+        let how = "the motion of the head, such as head.motion = \"pan:200\"";
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 

@@ -19,11 +19,11 @@ pub struct FileKey {
     pub applies_to: Vec<&'static str>,
 }
 
-/// Keys that exist whatever pipelines and displays the registry contains.
+/// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[(&str, &str)] = &[
-    ("title", "a line for people"),
+    ("title", "title of the experiment, for readers"),
     ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
-    ("triangles", "decimate the scene to at most so many primitives, keeping its shape"),
+    ("triangles", "decimate the scene to at most this number of primitives, with a similar shape"),
     (
         "fit",
         "move and scale a model file so that both eyes see all of it: true (default) or false (its coordinates are metres)",
@@ -38,23 +38,26 @@ const COMMON: &[(&str, &str)] = &[
         "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
          or a recording (.csv, .txt, .tum, .jsonl), relative to the experiment file, seen through a tracker",
     ),
-    ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
-    ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),
+    ("head.end", "behaviour after the end of a recording: error (a longer run is refused), hold or loop"),
+    ("head.axes", "axes of a recording: opengl, optical, euroc or robot; the default depends on the file format"),
     ("head.tracker", crate::head_names::TRACKERS),
     ("head.predict", "none, velocity, acceleration or kalman"),
     (
         "head.aim",
-        "the instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace",
+        "instant for which a view is predicted, within the time in which it is shown: middle, first-pixel, last-pixel or retrace",
     ),
     (
         "head.filter",
-        "numbers of the predictor: tuned (for the pipeline's own interval and the motion, with other noise than the run's) or given \
-          (those of tracking.filter)",
+        "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in the run) or \
+          given (those of tracking.filter)",
     ),
-    ("head.judge_at", "metres from the eye at which pixel errors are judged; default where the scene's content lies"),
+    (
+        "head.judge_at",
+        "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content",
+    ),
     (
         "head.raster",
-        "plain, vdrt (the raster is shifted by what the pose was wrong), or a device that moves pictures to the newest pose by shift, \
+        "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose by shift, \
          rotation (timewarp) or depth",
     ),
     (
@@ -63,7 +66,7 @@ const COMMON: &[(&str, &str)] = &[
     ),
     (
         super::reprojection::LATENCY,
-        "from the pose to the first light of what it moves, 0 to 100000; default 2000 a field, 500 a strip, 100 a line",
+        "microseconds from the pose to the first light of the pixels that it moves, 0 to 100000; default 2000 per field, 500 per strip, 100 per line",
     ),
     ("seed", "seed of the head motion's sway, or of the tracker's noise"),
     ("fields", "periods of the display to simulate: NTSC fields"),
@@ -82,10 +85,10 @@ const COMMON: &[(&str, &str)] = &[
     ("output.pictures", "write the last pictures as PNG: true or false"),
     ("output.timeline", "write a timeline as SVG: true or false"),
     ("output.csv", "write the measured quantities as CSV: true or false"),
-    ("published.figure", "number of the published figure that this reproduces"),
+    ("published.figure", "number of the published figure that the experiment reproduces"),
     ("published.source", "paper"),
-    ("published.quantity", "the measured quantity to be compared"),
-    ("published.value", "its published value"),
+    ("published.quantity", "measured quantity that is compared with the published value"),
+    ("published.value", "published value of the quantity"),
 ];
 
 /// Former names of keys, each with the current name.
@@ -100,7 +103,7 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     // The names of pipelines and displays depend on the registry.
     let mut all = vec![
         common("pipeline", &pipelines.join(", ")),
-        common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
+        common("display", &format!("display for which the pipeline draws: {}", displays.join(", "))),
     ];
     all.extend(super::display::keys().map(|(path, about)| common(&path, about)));
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));

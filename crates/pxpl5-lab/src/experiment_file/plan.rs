@@ -47,7 +47,7 @@ pub struct Published {
 impl Published {
     fn read(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
         let Some(value) = file.number("published.value")? else { return Ok(None) };
-        let missing = FileError::Missing { key: "published.quantity", how: "the quantity that was published" };
+        let missing = FileError::Missing { key: "published.quantity", how: "the published quantity" };
         let name = file.text("published.quantity")?.ok_or(missing)?;
         let quantity = measure(file, "published.quantity", name)?;
         let source = file.text("published.source")?.map(str::to_owned);

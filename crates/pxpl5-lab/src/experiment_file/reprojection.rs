@@ -12,7 +12,7 @@ pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 /// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// A raster as its name selects it: a raster without parameters, or a device that moves pictures in a certain way.
+/// A raster as selected by its name: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),
@@ -25,6 +25,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
     let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
     let names: Vec<(&str, Named)> = plain.into_iter().chain(devices).collect();
     let named = file.choice(RASTER, &names)?.unwrap_or(Named::Raster(Raster::Plain));
+    // The error names the key with its value, because other values of the key are valid.
     let refused = |applies_to: &str| {
         let place = file.get(RASTER).map(|setting| setting.place.clone()).unwrap_or_default();
         let key =
@@ -40,6 +41,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
             "pipelines whose pictures are of one eye; faces around the head are several pictures, of which the turn is left: rotation",
         ),
         Named::Raster(raster) => {
+            // Numbers of a device have no effect without a device.
             refuse_numbers(file)?;
             Ok(raster)
         }

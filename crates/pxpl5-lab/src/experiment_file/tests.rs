@@ -237,7 +237,7 @@ fn what_is_said_of_a_head_is_checked() {
         ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
     };
     let at = refusal("head.motion = \"pan:1\"\nhead.judge_at = 0");
-    assert!(at.contains("distance at which errors are judged, m: expected 0.001 to 1000000, found 0"), "{at}");
+    assert!(at.contains("distance at which errors are evaluated, m: expected 0.001 to 1000000, found 0"), "{at}");
     let end = refusal("head.motion = \"pan:1\"\nhead.end = \"hold\"");
     assert!(end.contains("line 4: head.end: expected nothing: head.motion is no recording"), "{end}");
     let sine = refusal("head.motion = \"sine:20\"");

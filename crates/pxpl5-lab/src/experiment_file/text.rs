@@ -37,6 +37,7 @@ impl Plan {
         }
         self.pipeline_settings(&mut all);
         self.scene_settings(&mut all);
+        // Without a tracked head, tracking parameters have no effect and are left out.
         if let Some(head) = &self.head {
             head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
             head.parameters().iter().for_each(|parameter| all.parameter(&parameter.path, parameter, &[]));

@@ -222,7 +222,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md` fails\n\
          if the file is out of date.\n\n\
          This file compares each published figure with the result of the model. All results come from the same machine parameters.\n\
-         The column *standing* gives the provenance of each row:\n\n\
+         The column *provenance* tells if something was chosen to reproduce the row:\n\n\
          - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
          - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
          - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
@@ -241,7 +241,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          FIFO and the number of channels of a sender. The interval of figure 17 also covers the positions of the photodiode on the screen\n\
          and the interpretations.\n\n\
          The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
-         | # | figure | published | simulated | error | analytic | interval | standing |\n\
+         | # | figure | published | simulated | error | analytic | interval | provenance |\n\
          |---|---|---|---|---|---|---|---|\n",
         rows.len(),
         mean_error_percent(rows),

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 pub struct FigureGroup {
     /// Name of the topic.
     pub title: &'static str,
-    /// Conditions shared by all rows of the group. Also conditions that the papers leave open.
+    /// Conditions shared by all rows of the group, and conditions that the papers leave open.
     pub about: &'static str,
     /// Rows in the order of the group's table.
     pub rows: Vec<FigureRow>,

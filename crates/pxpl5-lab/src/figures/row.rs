@@ -85,9 +85,9 @@ impl FigureRow {
     /// then wrong.
     ///
     /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
-    /// extension is the distance between `analytic` and `simulated`, because the two levels may differ as much at the
-    /// ends of the ranges as at the presets. The published value is compared with its printed range, or with its last
-    /// digit if no range is printed.
+    /// extension is the distance between `analytic` and `simulated`. The two levels may differ as much at the ends of
+    /// the ranges as at the presets. The published value is compared with its printed range, or with its last digit if
+    /// no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };

@@ -107,16 +107,16 @@ impl LevelReport {
                 "for sweeps and first answers on Rendering Control and Slats; not for other pipelines, a tracked head, pixels or single frames"
             }
             (Level::Analytic, true) => {
-                "for sweeps over machines that run our code; not for what was published of theirs, nor where no closed form exists"
+                "for sweeps over machines with the project's i860 code; not for published figures, and not for pipelines without closed form"
             }
             (Level::Transaction, false) => {
-                "the default: latencies, limits and pictures of the published machine; not for what an instruction or a cache costs"
+                "the default: latencies, limits and pictures of the published machine; not for the cost of instructions or caches"
             }
             (Level::Transaction, true) => {
-                "for long runs of our code, which it knows as means; not for scenes unlike the application scenes that the means come from"
+                "for long runs with mean times of the project's i860 code; not for scenes that differ from the application scenes, from which the means come"
             }
             (Level::Cycle, _) => {
-                "for questions about code, caches and clocks; not for long runs, nor for figures that the original code decided"
+                "for questions about code, caches and clocks; not for long runs, and not for figures that depend on the original code"
             }
         }
     }

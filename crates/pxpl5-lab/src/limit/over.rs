@@ -110,6 +110,7 @@ impl OverQuery {
     ///
     /// Returns [`FileError::Missing`] for a setting without such a range.
     pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, FileError> {
+        // The largest preset is the largest machine with a source.
         let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
             let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
             presets.map(|config| boards(&config) as u64).max().unwrap_or(1)
@@ -227,12 +228,14 @@ impl Search<'_> {
         let plan = self.query.plan(value)?;
         let scene = self.load(&plan)?;
         let goal = self.query.goal;
+        // The analytic level records no waits, so it cannot name the limiting resource.
         if plan.level == Level::Analytic {
             let summary = plan.run(scene)?.summary;
             let score = score(goal, &summary);
             return Ok(Trial { reached: is_reached(goal, &summary), score, because: None });
         }
         let experiment: Experiment = plan.experiment(scene).pixels(Pixels::Off).keep(Keep::Statistics);
+        // A run that ended early misses the goal, but its records still show the limiting resource.
         let (outcome, is_whole) = match experiment.run() {
             Ok(outcome) => (outcome, true),
             Err(ExperimentError::TooShort { partial, .. } | ExperimentError::Run { partial, .. }) => (*partial, false),
@@ -286,8 +289,8 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     score.filter(|score| score.is_finite()).unwrap_or(f64::MIN)
 }
 
-/// Utilisation above which a board counts as always busy, and so limits the machine (assumed: start-up and retraces leave up
-/// to 5 % of a short run idle).
+/// Utilisation above which a board counts as always busy, and so limits the machine. Assumed: the warm-up and retraces
+/// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
 /// Returns the limiting resource of a run: a board that is always busy, or else the longest wait in the latency.

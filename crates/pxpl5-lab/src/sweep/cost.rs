@@ -16,9 +16,9 @@ const POINT: f64 = 3e-3;
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the time in seconds that each point takes on one core. If the pipeline has an analytic model (closed
-    /// form), the model gives the number of pictures. An invalid point costs almost nothing. Points that differ only in
-    /// their seed get the same estimate.
+    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, it gives the
+    /// number of pictures. An invalid point costs almost nothing. Points that differ only in their seed get the same
+    /// estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
@@ -54,8 +54,8 @@ impl Sweep {
     }
 }
 
-/// Returns the number of pictures shown per field according to the pipeline's analytic model (closed form). Returns
-/// `None` if the pipeline has no such model.
+/// Returns the number of pictures shown per field according to the pipeline's closed form. Returns `None` if the
+/// pipeline has no such model.
 fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

@@ -167,7 +167,7 @@ fn overrides_are_what_differs_from_the_preset() {
     config.set("screen.period_us", 60).expect("known");
     assert_eq!(config.overrides().get("screen.period_us"), Some(&60.into()));
     config.preset = "a file".to_owned();
-    assert!(config.overrides().is_empty(), "nobody knows what it differs from");
+    assert!(config.overrides().is_empty(), "it has no preset to differ from");
 }
 
 /// A value outside its range causes no warning if the preset has the same value. A value within its range never causes

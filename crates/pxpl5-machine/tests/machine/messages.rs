@@ -124,7 +124,7 @@ fn a_renderers_answer_is_an_event_of_the_ring() {
 /// The sender of commands is notified when the renderer has the last word: one hop per port after the grant, without a
 /// stall.
 #[test]
-fn who_sends_to_a_renderer_goes_on_when_its_fifo_has_the_message() {
+fn a_sender_continues_when_the_fifo_of_the_renderer_has_the_message() {
     let mut machine = machine();
     let (length, list) = copy_command(CopyPath::FromPixelMemory, target(SCREEN, 0));
     load_sender(&mut machine, FIRST_GP, vec![(RENDERERS[0], length, list)]);

@@ -114,7 +114,7 @@ fn copying_is_a_stage_from_the_first_message_on() {
 
 /// The limit of discarding is counted in periods of the first display.
 #[test]
-fn what_is_before_an_instant_can_be_given_up() {
+fn records_before_an_instant_can_be_discarded() {
     let (mut machine, [left, right]) = told(&[
         arrived(150, 0, 1),
         arrived(160, 0, 1),
@@ -171,5 +171,5 @@ fn traffic_tells_when_each_message_was_taken_and_how_many_channels_were_busy() {
     assert!(traffic.fifo_changes.iter().any(|(_, time, words)| (*time, *words) == (end, 9)));
     let busy: Vec<u32> = traffic.busy_channels.iter().map(|(_, busy)| *busy).collect();
     assert!(busy.iter().all(|busy| *busy <= 1) && busy.contains(&1), "one message at a time: {busy:?}");
-    assert!(machine().into_record().observation().traffic.is_none(), "nobody asked");
+    assert!(machine().into_record().observation().traffic.is_none(), "it was not requested");
 }

@@ -7,7 +7,7 @@ use pxpl5_machine::{Board, Optimization};
 use pxpl5_sim::Time;
 
 #[test]
-fn a_saving_is_known_by_the_name_that_it_prints() {
+fn an_optimization_is_parsed_from_the_name_that_it_prints() {
     for saving in Optimization::ALL {
         assert_eq!(saving.name().parse(), Ok(saving));
         assert_eq!(saving.to_string(), saving.name());

@@ -98,7 +98,7 @@ fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
 }
 
 #[test]
-fn everybody_who_waits_is_told_with_what_he_waits_for() {
+fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
     let mut machine = machine();
     load_waiting(&mut machine, NodeId(0));
     // Both renderers copy to the same frame buffer. One of them occupies the port, so the other copy cannot begin.

@@ -238,7 +238,7 @@ impl Tile {
     /// Adds `x << j` to `destination` in the pixels where `gate` is set. If `negative` is true, subtracts it instead.
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
-        // The partial product is extended by its sign if the destination has a bit at position `top`.
+        // The partial product is sign-extended if the destination has a bit at position `top`.
         let extends = x.bits.signed && top < destination.width;
         let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY };
         let mut carry = EMPTY;

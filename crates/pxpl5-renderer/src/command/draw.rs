@@ -127,7 +127,7 @@ impl PhongTriangleEncoder {
     /// Creates an encoder for the commands of a layout.
     ///
     /// # Errors
-    /// [`Unsupported`] if the layout has no normals.
+    /// Returns [`Unsupported`] if the layout has no normals.
     pub fn new(layout: &Layout) -> Result<Self, Unsupported> {
         let blank_one = PhongTriangleCommand::default();
         let program = blank_one

@@ -148,6 +148,7 @@ fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &m
 
 fn read_coverage(program: &[ArrayInstruction], layout: &Layout) -> Option<SphereBody> {
     let short = SphereScratch::in_layout(layout).ok()?.short();
+    // The positions of the expressions are fixed in the program of a sphere.
     let &[
         _,
         ArrayInstruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
@@ -162,6 +163,7 @@ fn read_coverage(program: &[ArrayInstruction], layout: &Layout) -> Option<Sphere
     else {
         return None;
     };
+    // A layout with a short scratch drops `short` bits of the root, which are 2 `short` bits of the radicand.
     let root_shift = shift.checked_sub(2 * short)?;
     let depth_shift = left_shift.checked_sub(short)?;
     Some(SphereBody { silhouette, root_shift, depth, depth_shift })

@@ -74,7 +74,7 @@ impl ArrayInstruction {
     /// Decodes all instructions of a list.
     ///
     /// # Errors
-    /// [`DecodeError`] for the first invalid instruction.
+    /// Returns [`DecodeError`] for the first invalid instruction.
     pub fn decode_all(words: &[Word]) -> Result<Vec<Self>, DecodeError> {
         let mut out = Vec::new();
         let mut position = 0;
@@ -221,6 +221,7 @@ fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize
 
 fn expression_use(encoded: &EncodedInstruction<'_>, code: u8) -> Result<(ExpressionUse, usize), DecodeErrorKind> {
     must_be_zero(u32::from(encoded.modifier & 0x40))?;
+    // Bit 7 (*again*) belongs to the expression. Bit 6 is unused.
     let shift = encoded.modifier & 63;
     Ok(match code {
         0 => {
@@ -234,6 +235,7 @@ fn expression_use(encoded: &EncodedInstruction<'_>, code: u8) -> Result<(Express
             let [word] = encoded.tail()?;
             must_be_zero(word & 0xffc0)?;
             let field = encoded.field()?;
+            // The second word holds the field to subtract, and its left shift.
             let subtrahend = checked_field(word >> 16)?;
             let left_shift = (word & 63) as u8;
             (ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift }, 2)
@@ -289,6 +291,7 @@ fn one_source(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usi
         _ => {
             encoded.no_modifier()?;
             unsigned(&[source])?;
+            // A root of w bits needs a radicand of 2 w bits.
             width(source, 2 * u32::from(destination.width))?;
             ArrayInstruction::SquareRoot { destination, radicand: source }
         }
@@ -368,6 +371,7 @@ fn output(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize),
 
 fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
     let [place, how, width, height, region_width, region_height, low, high] = words;
+    // The second word holds the lines in its upper bits, and the buffer in its lowest byte.
     let lines = match how >> 8 {
         0 => Lines::Frame,
         1 => Lines::Field(FieldParity::Even),

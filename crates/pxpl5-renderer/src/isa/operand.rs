@@ -9,7 +9,7 @@ pub struct Operand {
     pub width: u8,
     /// True if the address is relative to the first bit of the selected context.
     pub relative: bool,
-    /// True if the field holds a two's complement number. Such a field is extended by its sign.
+    /// True if the field holds a two's complement number. Such a field is sign-extended.
     pub signed: bool,
 }
 

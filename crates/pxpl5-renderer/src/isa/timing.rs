@@ -21,8 +21,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// Derived: 4 is the only whole number that fits the bit budgets of the published recipe for both kinds of triangle.
 /// The budgets are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
-/// The formats on the wire need 2 (enable) + 3 x 32 (edges) + 32 (compare Z) + 32 (store Z) + 3 x 20 (colour) = 222
-/// clocks in 9 instructions. With normals they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in
+/// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
+/// and 3 x 20 (colour). With normals they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in
 /// 10. So 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
 /// The published rate of 150,000 triangles a second is 267 clocks for each triangle (TR94, without the kind of

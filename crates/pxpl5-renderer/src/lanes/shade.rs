@@ -138,7 +138,8 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// Returns the limited cosine, and the final content of the field `c`: the remainder, below the sign of the product.
+/// Returns the cosine, which is 0 for surfaces that face away, and the final content of the field `c`. That field holds
+/// the remainder of the division, and the sign of the product in bit 23.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);

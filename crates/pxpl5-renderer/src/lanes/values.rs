@@ -58,7 +58,7 @@ pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
     if signed { (value as i64 >> by) as u64 } else { value >> by }
 }
 
-/// Extends the low `width` bits to 64 bits, by their sign if `signed` is true, otherwise by zeros.
+/// Sign-extends the low `width` bits to 64 bits if `signed` is true. Otherwise zero-extends them.
 pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
     let unused = 64 - width;
     if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }

@@ -190,7 +190,7 @@ impl Pipeline for Frameless {
     }
 
     fn due_definition(&self) -> &'static str {
-        "no picture is ever due: blocks are shown as they come, and there are no frames to miss"
+        "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
     /// Returns the number of updates in a pass, because a pass draws a whole picture.

@@ -237,7 +237,7 @@ impl Pipeline for Jitp {
     }
 
     fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every strip is there before its beam"
+        "a picture is due every field, and in time if every strip arrives before the beam"
     }
 
     fn source(

@@ -192,7 +192,7 @@ impl Pipeline for RenderingControl {
     }
 
     fn due_definition(&self) -> &'static str {
-        "a frame is due as often as COPY lets it: in so many periods as the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); it is shown when it is swapped in"
+        "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
     /// Returns the index of the eye, because the copies of the eyes are timed separately.

@@ -264,7 +264,7 @@ impl Pipeline for Slats {
     }
 
     fn due_definition(&self) -> &'static str {
-        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup a late picture counts for the later retrace of its lines at which it is shown"
+        "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown"
     }
 
     /// Returns the half of a split copy to which an arrival belongs. The halves are timed separately.
@@ -274,8 +274,8 @@ impl Pipeline for Slats {
     }
 }
 
-/// Largest number of retraces after its own retrace at which a late field can still be shown under a backup. The number
-/// covers two later retraces of the field's lines.
+/// Largest number of retraces from a late field's own retrace to the last retrace at which the field can still be shown
+/// under a backup. The lines of the field are scanned twice more within this number.
 const LATER_RETRACES: u64 = 4;
 
 /// State of the copy of a field to the display.
@@ -361,8 +361,8 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     keys: &[
         Key {
             name: "copy",
-            about: "when regions are copied: whole (all before the retrace), split (the bottom ones after it) or backup (split, \
-                    and the last complete field stands in for a late one; beyond the prototype)",
+            about: "time of the copies of regions: whole (all before the retrace), split (the bottom regions after it) or \
+                    backup (split, and the last complete field replaces a late field; beyond the prototype)",
             values: KeyValues::Names(&[COPIES[0].0, COPIES[1].0, COPIES[2].0]),
             sets: &[],
         },

@@ -141,8 +141,8 @@ fn all_regions_take_the_ports_time_and_no_more() {
     }
 }
 
-/// Balls of 1 m radius ahead whose nearest points are 2, 13, 27 and 46 m away: objects of memories 0 to 3 for a viewer who walks past
-/// at 1 m/s (their borders are 10.87, 21.73 and 43.46 m).
+/// Balls of 1 m radius ahead, whose nearest points are 2, 13, 27 and 46 m away. For a viewer who walks past at 1 m/s,
+/// the borders of the memories are 10.87, 21.73 and 43.46 m. The balls are therefore objects of memories 0 to 3.
 fn balls() -> Scene {
     let places = [3.0, 14.0, 28.0, 47.0];
     let ball = |z: f32| Sphere { centre: Vec3::new(0.0, 0.0, -z), radius: 1.0, colour: [200, 120, 40] };
@@ -243,7 +243,7 @@ fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
 }
 
 #[test]
-fn savings_and_pixels_change_no_time_and_no_texel() {
+fn optimizations_and_pixels_change_no_time_and_no_texel() {
     let lazy = after(&ball(), 16);
     let faces = memory(lazy.record(), 0).shown_faces();
     assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 50, "something was drawn");

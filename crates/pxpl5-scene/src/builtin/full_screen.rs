@@ -36,7 +36,7 @@ pub(super) fn scene(count: u32) -> Scene {
 /// Adds the smallest triangle that covers a square: no other has its farthest corner nearer to the square's centre. The
 /// corners reach 1 + sqrt(2) times half of the square's side, horizontally and vertically.
 ///
-/// The corners lie at (-r, -r), (r, -s) and (-s, r), where r = (1 + sqrt(2)) h, s = (sqrt(2) - 1) h and h is half of
+/// The corners lie at (-r, -r), (r, -s) and (-s, r). Here r = (1 + sqrt(2)) h, s = (sqrt(2) - 1) h, and h is half of
 /// the side. Two sides of the triangle run through the lower right and the upper left corner of the square. The third
 /// side runs through the upper right corner.
 ///

@@ -60,10 +60,12 @@ impl Counts {
             match words.next() {
                 Some(b"v") => {
                     counts.points += 1;
+                    // Three coordinates come first. The largest colour component shows the scale of all colours.
                     let colour = words.skip(3).take(3).filter_map(|word| text(word).parse().ok());
                     counts.brightest = colour.fold(counts.brightest, f64::max);
                 }
                 Some(b"vn") => counts.normals += 1,
+                // A face of n corners is cut into n - 2 triangles.
                 Some(b"f") => counts.triangles += words.count().saturating_sub(2),
                 Some(b"usemtl") => counts.has_materials = true,
                 _ => {}

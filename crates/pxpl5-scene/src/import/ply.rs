@@ -367,7 +367,7 @@ impl<'a> Rows<'a> {
         if rest.iter().all(u8::is_ascii_whitespace) {
             return Ok(());
         }
-        let expected = "the end of the file behind the last row that the header announces";
+        let expected = "the end of the file after the last row that the header announces";
         let first = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or_default();
         let found = String::from_utf8_lossy(&rest[first..rest.len().min(first + 40)]).into_owned();
         Err(self.source.syntax(self.place(), expected, excerpt(&found)))

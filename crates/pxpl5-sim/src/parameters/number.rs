@@ -11,7 +11,7 @@ pub trait Number: Copy + Into<Value> {
     ///
     /// # Errors
     ///
-    /// [`ParameterError::NotWhole`] if the field needs a whole number and the value is not whole.
+    /// Returns [`ParameterError::NotWhole`] if the field needs a whole number and the value is not whole.
     fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
         *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
         Ok(())
@@ -35,7 +35,7 @@ impl Number for f64 {
 ///
 /// # Errors
 ///
-/// [`ParameterError::OutOfLimits`] if the number is outside `limits`, the smallest and largest allowed value.
+/// Returns [`ParameterError::OutOfLimits`] if the number is outside `limits`, the smallest and largest allowed value.
 pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
     check_value(name, found.into(), (limits.0.into(), limits.1.into()))
 }

@@ -38,15 +38,15 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// [`ParameterError::Unknown`] if no parameter has this name.
+    /// Returns [`ParameterError::Unknown`] if no parameter has this name.
     fn get(&self, name: &str) -> Result<Value, ParameterError>;
 
     /// Changes the value of a parameter. Range and limits are not checked here: call [`ParameterTable::check`].
     ///
     /// # Errors
     ///
-    /// [`ParameterError::Unknown`] if no parameter has this name. [`ParameterError::NotWhole`] if the field holds whole
-    /// numbers and the value is not whole.
+    /// Returns [`ParameterError::Unknown`] if no parameter has this name. [`ParameterError::NotWhole`] if the field
+    /// holds whole numbers and the value is not whole.
     fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
 
     /// Returns all parameters with their current values, in the order of the fields.
@@ -63,7 +63,7 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// [`ParameterError::OutOfLimits`] for the first parameter whose value is outside its limits.
+    /// Returns [`ParameterError::OutOfLimits`] for the first parameter whose value is outside its limits.
     fn check(&self) -> Result<(), ParameterError> {
         for info in self.infos() {
             let value = self.get(info.name)?;

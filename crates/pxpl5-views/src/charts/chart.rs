@@ -134,7 +134,7 @@ impl Chart {
     ///
     /// # Panics
     ///
-    /// Never, because a string accepts all output.
+    /// Never panics, because a string accepts all output.
     #[must_use]
     pub fn svg(&self) -> String {
         let measures = self.size.measures(self.series.len());

@@ -15,7 +15,7 @@ pub(super) fn speed(report: &Value) -> [Element; 2] {
             real_time(report)
         )
     } else {
-        format!("{fields} fields; how long they took is not known.")
+        format!("{fields} fields; the host time is not known.")
     };
     [heading("Speed of the emulation"), paragraph(text)]
 }

@@ -18,8 +18,8 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
         return all;
     }
     let means: Vec<MeanPart> = parts.iter().map(mean_part).collect();
-    all.push(heading("Where it goes"));
-    all.push(paragraph("Mean over all complete pictures; the frame holds what the papers count."));
+    all.push(heading("Parts of the latency"));
+    all.push(paragraph("Mean over all complete pictures. The frame marks the parts that the papers count."));
     all.extend(part_bar_element(&means));
     all.push(table(&["part", "mean, ms", "sd", "n", "definition"], parts.iter().map(part_row)));
     all

@@ -2,7 +2,7 @@
 
 use csv::{ReaderBuilder, StringRecord};
 
-/// Returns the values of the column `latency_ps` in milliseconds, from the rows that are `steady` (after start-up).
+/// Returns the values of the column `latency_ps` in milliseconds, from the rows that are `steady` (after the warm-up).
 ///
 /// Returns an empty list for a file without these columns.
 #[must_use]

@@ -16,7 +16,7 @@ pub struct PageRun {
     pub pictures: Vec<PagePicture>,
     /// Timeline as SVG.
     pub timeline: Option<Vec<u8>>,
-    /// Latency of each picture after start-up, in milliseconds. [`latencies_ms`](super::latencies_ms) reads these
+    /// Latency of each picture after the warm-up, in milliseconds. [`latencies_ms`](super::latencies_ms) reads these
     /// values from `pictures.csv`.
     pub latencies_ms: Vec<f64>,
 }

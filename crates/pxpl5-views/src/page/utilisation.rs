@@ -41,7 +41,7 @@ fn boards(utilisation: &Value) -> Vec<Element> {
     let of_ms = decimal(&utilisation["of_ms"], 1);
     vec![
         heading("How busy the boards were"),
-        paragraph(format_args!("Shares of {of_ms} ms, from switching on to the end of the run.")),
+        paragraph(format_args!("Shares of {of_ms} ms, from the start of the machine to the end of the run.")),
         table(&["boards", "mean", "busiest", "its number", "idle boards", "of that"], rows),
     ]
 }
@@ -58,6 +58,7 @@ fn path(path: &Value) -> Vec<Element> {
             cell(part["board"].as_str().unwrap_or_default()),
         ])
     });
+    // The chain goes backwards in time, so the arrows point to the earlier work.
     let chain = list(&path["chain"]).iter().map(plain).collect::<Vec<_>>().join(" \u{2190} ");
     vec![
         heading("What limits the latency"),

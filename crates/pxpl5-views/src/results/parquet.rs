@@ -18,7 +18,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 ///
-/// [`parquet::errors::ParquetError`] if the writer fails.
+/// Returns [`parquet::errors::ParquetError`] if the writer fails.
 pub fn parquet(outcome: &Outcome, out: impl Write + Send) -> Result<()> {
     let columns = columns();
     let fields = columns.iter().map(field).collect::<Result<_>>()?;

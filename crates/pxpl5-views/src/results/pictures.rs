@@ -38,8 +38,8 @@ pub fn columns() -> Vec<Column> {
             "picture",
             "number of the frame (Rendering Control), field (Slats, just-in-time pixels) or update (frameless)",
         ),
-        Column::always("steady", "1 for pictures in the window, over which the report's statistics are; else 0"),
-        Column::always("complete", "1 if all of the picture was there in time, else 0"),
+        Column::always("steady", "1 for pictures in the window of the report's statistics, else 0"),
+        Column::always("complete", "1 if the picture was complete in time, else 0"),
         Column::optional("sampled_at_ps", "when its pose was sampled"),
         Column::always("transform_at_ps", "start of TRANSFORM"),
         Column::optional("copied_at_ps", "end of COPY; missing if a region never arrived"),
@@ -49,7 +49,7 @@ pub fn columns() -> Vec<Column> {
         ),
         Column::optional(
             "latency_ps",
-            "shown_at_ps - transform_at_ps; missing of a picture that was not complete in time",
+            "shown_at_ps - transform_at_ps; missing for a picture that was not complete in time",
         ),
     ];
     // The parts of the latency follow.
@@ -57,7 +57,7 @@ pub fn columns() -> Vec<Column> {
         Column::optional(
             &format!("{}_ps", part.name),
             &format!(
-                "{}; missing outside of the window and of a picture that was not complete in time",
+                "{}; missing outside of the window, and for a picture that was not complete in time",
                 part.definition
             ),
         )

@@ -5,7 +5,7 @@ use pxpl5_wire::{PeriodNumber, PictureNumber};
 /// Options that select the part of a run to draw, and the rows of the drawing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TimelineOptions {
-    /// Picture whose dependencies are drawn. The default is the first picture after start-up.
+    /// Picture whose dependencies are drawn. The default is the first picture after the warm-up.
     pub picture: Option<PictureNumber>,
     /// First display period to draw. For NTSC, a period is a field. The default is the period in which the pose of the
     /// chosen picture is sampled.

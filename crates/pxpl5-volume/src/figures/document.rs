@@ -32,14 +32,14 @@ fn head(text: &mut String, figures: &Figures) {
          | authors | title | report |\n|---|---|---|\n\
          | W.-S. Chun, T. J. Purtell II, O. S. Cossairt | *Technical Introduction to the Basic SpatialGL Rendering Pipeline for \
          Perspecta 1.9/2.0* | Actuality Systems, ASI-0110, 2005 |\n\n\
-         The column *standing* has these values:\n\n\
+         The column *provenance* has these values:\n\n\
          - *published*: The paper prints the number.\n\n\
          - *derived*: The number follows from printed numbers by a formula.\n\n\
          - *measured*: The number was counted in the volume of a scene, with the hyperbolic clip and a projection along the normal.\n\n\
          The paper prints no times, rates or speed-ups. The times of `pxpl5 volume run` come from a model with a preset of 2005.\n\n\
          The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the inputs of\n\
          the model and the numbers that follow from them by arithmetic. The model meets {met} of {} rows.\n\n\
-         | # | statement | source | standing | expected | model | error | |\n|---|---|---|---|---|---|---|---|\n",
+         | # | statement | source | provenance | expected | model | error | |\n|---|---|---|---|---|---|---|---|\n",
         figures.figures.len()
     );
 }
@@ -115,7 +115,7 @@ fn definitions(text: &mut String, all: &[DefinitionRow]) {
         "\n## Definitions\n\n\
          The table lists the inputs that the paper prints, and the numbers that follow from inputs by arithmetic. No simulation could\n\
          change these numbers.\n\n\
-         | # | number | source | standing | value |\n|---|---|---|---|---|\n"
+         | # | number | source | provenance | value |\n|---|---|---|---|---|\n"
     );
     for DefinitionRow { definition, source } in all {
         let value = number(definition.value);
@@ -183,7 +183,7 @@ fn numbers(text: &mut String) {
         text,
         "\n## Numbers\n\nThe table lists the settings of the model. An assumed number has a range of values, because the paper does not give it.\n\
          The option `--set PATH=VALUE` changes a setting.\n\n\
-         | path | value | unit | standing | range | source |\n|---|---|---|---|---|---|\n"
+         | path | value | unit | provenance | range | source |\n|---|---|---|---|---|---|\n"
     );
     for (path, Entry { info, value }) in VolumeSettings::paper().numbers() {
         let (low, high) = info.range;

@@ -51,7 +51,7 @@ const COLOURS: [[u8; 3]; 8] = [
 ///
 /// # Errors
 ///
-/// [`VolumeError`] if the scene cannot be drawn.
+/// Returns [`VolumeError`] if the scene cannot be drawn.
 pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, VolumeError> {
     let drawing = |number, about, picture| Drawing { number, about, picture };
     Ok(vec![

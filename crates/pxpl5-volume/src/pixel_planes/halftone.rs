@@ -12,7 +12,8 @@ const THRESHOLD_BITS: u8 = 8;
 /// triangles do not change these bits. The thresholds are loaded once at start-up, so they cost no time per volume.
 ///
 /// # Panics
-/// If the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of scratch.
+/// Panics if the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of
+/// scratch.
 #[must_use]
 pub fn threshold_field(layout: &Layout) -> Operand {
     scratch(layout).part(0, THRESHOLD_BITS)

@@ -74,7 +74,7 @@ const COPY_WORDS: u32 = 9;
 ///
 /// # Errors
 ///
-/// [`VolumeError::Missing`] if there are more boards than ports on a ring.
+/// Returns [`VolumeError::Missing`] if there are more boards than ports on a ring.
 pub fn simulate(
     traffic: &SliceTraffic,
     bounds: &SliceBounds,

@@ -25,7 +25,7 @@ pub enum HostAction {
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] if a message other than the master's answer arrives.
+/// Returns [`Fault::Protocol`] if a message other than the master's answer arrives.
 pub async fn host(
     gp: Gp,
     config: CubeControlConfig,

@@ -84,7 +84,7 @@ struct CubeMaster {
 ///
 /// # Errors
 ///
-/// [`Fault::Protocol`] for an invalid message, and [`Fault::Memory`] if the program does not fit into memory.
+/// Returns [`Fault::Protocol`] for an invalid message, and [`Fault::Memory`] if the program does not fit into memory.
 pub async fn master(gp: Gp, config: CubeControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = CubeMaster::new(gp, config);

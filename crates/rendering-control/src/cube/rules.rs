@@ -19,8 +19,8 @@ pub(crate) struct Completed {
 impl Completed {
     /// Returns true if EDIT of an update may begin.
     ///
-    /// Four things must be complete: SEND of the same update, TRANSFORM of the previous update, RENDER of the second
-    /// previous update, and COPY of the third previous update. RENDER matters because there are only two bin contexts.
+    /// Four stages must be complete: SEND of this update, TRANSFORM of the previous one, RENDER of the one before that,
+    /// and COPY of the third previous one. RENDER matters because there are only two bin contexts.
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n

@@ -17,8 +17,8 @@ pub struct FaceUpdate {
     pub buffer: u8,
     /// Bit mask of the memories that must swap together with this one. 0 if this memory swaps alone.
     pub together: u8,
-    /// The view of an eye in its initial orientation, with the projection of a face. Also contains the edits of
-    /// structures.
+    /// The view of an eye in its initial orientation, with the projection of a face. The view also contains the edits
+    /// of structures.
     pub view: FrameView,
     /// For each structure of the display list: true if the memory holds the structure.
     pub structures: Vec<bool>,

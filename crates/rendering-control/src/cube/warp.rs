@@ -31,7 +31,7 @@ impl FaceWarp {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the length of the falloff is not positive and finite.
+    /// Returns [`PriorityError`] if the length of the falloff is not positive and finite.
     pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, PriorityError> {
         let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
         Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))

@@ -18,7 +18,7 @@ impl FlatDisplay {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] if a side of the size is out of range, or if the width is not a multiple of 8.
+    /// Returns [`SpatialError::Setting`] if a side of the size is out of range, or if the width is not a multiple of 8.
     pub fn new(size: Size, view: DMat4, projection: DMat4) -> Result<Self, SpatialError> {
         check_size(size)?;
         let mut only = SliceView::new(view, projection, SliceVolume::Frustum, size);

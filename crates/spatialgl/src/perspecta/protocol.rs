@@ -5,9 +5,9 @@
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map must make them dark. This rule is derived: otherwise the tiles of the volume
-//! before the last would stay visible. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] per message. All
-//! messages write to the store that is not shown.
+//! Empty tiles are not sent, so the map must make them dark. Without this rule (derived), the store would still show
+//! the tiles of the volume before the last one. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] per
+//! message. All messages write to the store that is not shown.
 
 use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};

@@ -189,7 +189,7 @@ impl Light {
 ///
 /// # Errors
 ///
-/// [`PerspectaError::Camera`] if a number of the camera is out of range.
+/// Returns [`PerspectaError::Camera`] if a number of the camera is out of range.
 pub fn view_planes(
     planes: &BitPlanes,
     camera: &Camera,

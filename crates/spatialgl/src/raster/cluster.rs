@@ -87,7 +87,7 @@ impl Bin {
     /// Creates a bin from the indices of primitives in the recording. The indices must be in ascending order.
     ///
     /// # Panics
-    /// If the recording has no such primitive.
+    /// Panics if the recording has no such primitive.
     #[must_use]
     pub fn new(commands: &CommandBuffer, primitives: Vec<u32>) -> Self {
         let balls = primitives.chunks(CLUSTER).map(|cluster| ball(commands, cluster)).collect();

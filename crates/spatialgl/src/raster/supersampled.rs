@@ -25,7 +25,7 @@ impl<R: SliceRenderer> Supersampled<R> {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] unless `samples` is 4 or 16.
+    /// Returns [`SpatialError::Setting`] unless `samples` is 4 or 16.
     pub fn new(inner: R, samples: u32) -> Result<Self, SpatialError> {
         require([4, 16].contains(&samples), "draw.samples", "4 or 16", samples)?;
         Ok(Self { inner, factor: samples.isqrt(), scratch: Mutex::new(Vec::new()) })

@@ -32,7 +32,7 @@ impl Pendulum {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if the arm or the amplitude is outside the limits of [`table::RigNumbers`].
+    /// Returns [`SettingError`] if the arm or the amplitude is outside the limits of [`table::RigNumbers`].
     pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, SettingError> {
         table::RigNumbers { pendulum_arm: arm_m, pendulum_amplitude: amplitude_deg, ..table::RigNumbers::PAPERS }
             .check()?;

@@ -75,7 +75,7 @@ impl Synthetic {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if a number is out of range.
+    /// Returns [`SettingError`] if a number is out of range.
     pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, SettingError> {
         for metres in config.centre_m {
             SettingError::check("centre of the motion", metres, -1e6, 1e6)?;

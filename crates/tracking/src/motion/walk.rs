@@ -36,7 +36,7 @@ impl Walk {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. Fewer than two corners, or
+    /// Returns [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. Fewer than two corners, or
     /// successive corners less than 1 mm apart, are errors too.
     pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
         SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;

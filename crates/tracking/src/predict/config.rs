@@ -141,7 +141,7 @@ impl PredictorConfig {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if a setting is out of range.
+    /// Returns [`SettingError`] if a setting is out of range.
     pub fn build(&self) -> Result<Box<dyn Predictor>, SettingError> {
         self.check()?;
         Ok(match self.kind {

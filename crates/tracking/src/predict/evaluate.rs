@@ -31,12 +31,12 @@ impl PredictionError {
     }
 }
 
-/// Computes the errors of a predictor for each prediction interval. It evaluates the reports whose orientation was true
-/// in [from, until). A prediction interval counts from the instant at which the last report was true.
+/// Computes the errors of a predictor for each prediction interval. Only reports whose orientation was measured in
+/// [from, until) are evaluated. A prediction interval begins when the orientation of the last report was measured.
 ///
 /// # Errors
 ///
-/// [`SettingError`] if a setting of `config` is out of range.
+/// Returns [`SettingError`] if a setting of `config` is out of range.
 pub fn prediction_errors<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,

@@ -9,9 +9,9 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Length of the motion on which a filter is tuned, seconds, and length of its start that is not evaluated. Lively
-/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
-/// motion worse than a filter tuned for 50 ms.
+/// Length in seconds of the motion on which a filter is tuned, and length in seconds of its first part, which is not
+/// evaluated. Lively periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted
+/// 200 ms of another motion worse than a filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
@@ -41,7 +41,7 @@ pub struct Training {
     /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
     /// motion.
     pub sibling: bool,
-    /// Length of the motion on which the filter was tuned, seconds. Up to its first second is not evaluated.
+    /// Length of the motion on which the filter was tuned, seconds. Up to one second at its start is not evaluated.
     pub seconds: f64,
     /// Number of reports from which a prediction was evaluated.
     pub reports: u64,
@@ -82,7 +82,7 @@ pub fn training_seed(judged: u64) -> u64 {
 ///
 /// # Errors
 ///
-/// [`SettingError`] for `base` out of range.
+/// Returns [`SettingError`] for `base` out of range.
 pub fn tune<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,

@@ -16,7 +16,7 @@ impl TrackerModel {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if a setting is out of range or contradicts another.
+    /// Returns [`SettingError`] if a setting is out of range or contradicts another.
     pub fn new(config: TrackerConfig) -> Result<Self, SettingError> {
         check_times(&config)?;
         SettingError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;

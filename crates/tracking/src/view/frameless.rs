@@ -24,7 +24,7 @@ impl RandomOrder {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if `n_pixels` is out of range.
+    /// Returns [`SettingError`] if `n_pixels` is out of range.
     pub fn new(n_pixels: u32, seed: u64) -> Result<Self, SettingError> {
         SettingError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
         let width = n_pixels.next_power_of_two().trailing_zeros().max(2);

@@ -35,7 +35,7 @@ impl HmdView {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] if a size or the angle is out of range.
+    /// Returns [`SettingError`] if a size or the angle is out of range.
     pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, SettingError> {
         table::HeadMountedView { width: width_px.into(), height: height_px.into(), horizontal_angle: horizontal_deg }
             .check()?;

@@ -7,7 +7,7 @@ use svg2pdf::{ConversionOptions, PageOptions};
 /// Resolution of a PNG file in dots per inch.
 const PNG_DOTS: f32 = 300.0;
 
-/// Resolution of an SVG drawing: its unit of length is the CSS pixel, of which an inch has 96.
+/// Resolution of an SVG drawing. The unit of length is the CSS pixel, and an inch has 96 CSS pixels.
 const SVG_DOTS: f32 = 96.0;
 
 /// Converts a figure from SVG to a PDF page of the same size.

@@ -80,7 +80,7 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 
 /// Descriptions of variants that latch orientations more often than the variant above them.
 const BY_LINE: &str = "the same, with an orientation for each line";
-const BY_PIXEL: &str = "the same, with an orientation latched for each pixel, as often as the host's line carries one";
+const BY_PIXEL: &str = "the same, with an orientation for each pixel, as far as the host's connection can carry them";
 
 /// Creates an entry from a policy and a latch mode.
 macro_rules! entry {
@@ -115,7 +115,7 @@ pub(crate) const ENTRIES: [PipelineEntry; 15] = [
     entry!(CellsWarped, Pixel, BY_PIXEL),
     ideal(
         Latch::Field,
-        "faces of an ideal renderer that takes no time: the limit of what a faster machine could gain",
+        "faces of an ideal renderer that takes no time: the best result that a faster machine could reach",
         |settings| build_ideal(Latch::Field, settings),
     ),
     ideal(Latch::Line, BY_LINE, |settings| build_ideal(Latch::Line, settings)),

@@ -22,8 +22,8 @@ pub(crate) const ORIENTATION_WORDS: u32 = 9;
 ///
 /// The timing states which tracker report each orientation uses, and for which instant the orientation is predicted. A
 /// display that latches by field gets one orientation for each report. A display that latches by line or by pixel gets
-/// more orientations than reports. The host then predicts from the newest report, for each line or for as many parts of
-/// a line as its connection to the display can carry.
+/// more orientations than reports. The host then predicts from the newest report, for each line or part of a line. The
+/// host's connection to the display limits the number of parts.
 #[derive(Clone, Copy, Debug)]
 pub struct OrientationTiming {
     scan: Scan,

@@ -431,7 +431,7 @@ impl Pipeline for FacePipeline {
     }
 
     fn due_definition(&self) -> &'static str {
-        "an update is never due: until it is shown the old faces are looked up in the right direction, from the old place"
+        "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position"
     }
 
     fn has_one_pose(&self) -> bool {

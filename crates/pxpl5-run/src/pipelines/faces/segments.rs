@@ -26,7 +26,7 @@ impl SegmentedScene {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] if the scene cannot be cut: see [`Segmentation::new`].
+    /// Returns [`PriorityError`] if the scene cannot be cut: see [`Segmentation::new`].
     pub fn segmented(scene: &Scene, side_m: f64) -> Result<Self, PriorityError> {
         let mut pieces = Pieces::of(scene);
         for structure in scene.structures() {
@@ -43,7 +43,7 @@ impl SegmentedScene {
     ///
     /// # Errors
     ///
-    /// Like [`SegmentedScene::segmented`].
+    /// Fails in the same cases as [`SegmentedScene::segmented`].
     pub fn whole(scene: &Arc<Scene>, side_m: f64) -> Result<Self, PriorityError> {
         let cells = scene.structures().iter().map(|structure| cells(scene, structure, side_m));
         Ok(Self { scene: Arc::clone(scene), cells: cells.collect::<Result<Vec<_>, _>>()?.into() })

@@ -5,9 +5,9 @@ use crate::pose::Pose;
 /// The convention for the coordinate axes of a recording: the axes of the head or of its sensor, and the up direction
 /// of the world.
 ///
-/// Two constant rotations W and B convert a recorded pose (p, q) into this crate's axes, which are right-handed with y
-/// up and the view along -z. The position becomes W p and the orientation W q B. W rotates the recorded world axes to
-/// this crate's world axes. B rotates this crate's head axes to the recorded head axes.
+/// This crate's axes are right-handed with y up and the view along -z. Two constant rotations W and B convert a
+/// recorded pose (p, q) into these axes. The position becomes W p and the orientation W q B. W rotates the recorded
+/// world axes to this crate's world axes. B rotates this crate's head axes to the recorded head axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// The axes of this crate and of OpenGL. Head: x right, y up, looks along -z. World: y up.

@@ -67,7 +67,7 @@ impl Columns {
     ///
     /// # Errors
     ///
-    /// [`RecordingError::Mapping`] if the quantity is unknown or already has a column.
+    /// Returns [`RecordingError::Mapping`] if the quantity is unknown or already has a column.
     pub fn map(&mut self, field: &str, column: &str) -> Result<(), RecordingError> {
         let mapping = |found: String| RecordingError::Mapping { expected: EXPECTED, found };
         let known = FIELDS.iter().find(|known| known.name == field);

@@ -18,7 +18,7 @@ pub enum RecordingError {
     /// The columns of the file cannot be recognized and no mapping was given.
     #[error(
         "line {line}: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file (#timestamp [ns],p_RS_R_x [m],...), a TUM \
-         file (eight numbers apart by spaces), a pose log (predicted_display_time,position_x,...,orientation_w as CSV or JSON lines) or a \
+         file (eight numbers separated by spaces), a pose log (predicted_display_time,position_x,...,orientation_w as CSV or JSON lines) or a \
          mapping of columns, found {found}"
     )]
     Format {
@@ -28,7 +28,7 @@ pub enum RecordingError {
         found: String,
     },
     /// The header of a pose log lacks required columns.
-    #[error("line {line}: expected the columns of a pose log, of which {missing} are missing; found {found}")]
+    #[error("line {line}: expected all columns of a pose log, found {found} without {missing}")]
     PoseLog {
         /// Line number of the error in the file, counted from 1.
         line: u64,

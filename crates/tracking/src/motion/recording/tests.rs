@@ -96,7 +96,7 @@ fn an_empty_recording_is_an_error() {
 }
 
 #[test]
-fn columns_that_nobody_knows_are_an_error_that_says_what_is_known() {
+fn unknown_columns_are_an_error_that_lists_the_known_columns() {
     let error = Recording::read(&b"t,x,y,z\n0,0,0,0\n"[..]).unwrap_err();
     let said = error.to_string();
     assert!(said.starts_with("line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file"), "{said}");
