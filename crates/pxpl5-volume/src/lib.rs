@@ -45,3 +45,8 @@ pub use report::{Brightness, DisplayReport, ModelPart, ModelTimes, Override, Pix
 pub use settings::VolumeSettings;
 pub use spatialgl;
 pub use workers::Counted;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
