@@ -193,7 +193,7 @@ mod tests {
     /// Returns the lines of a text that begin with the command `pxpl5`, split into words. Lines that end in a backslash
     /// are joined. Comments and shell variables are replaced.
     fn commands(text: &str) -> Vec<Vec<String>> {
-        let joined = text.replace("\\\n", " ");
+        let joined = text.split("\\\n").map(str::trim).collect::<Vec<_>>().join(" ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
         lines.map(words).collect()
     }

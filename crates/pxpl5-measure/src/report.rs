@@ -10,12 +10,12 @@ use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surfac
 use crate::program;
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
-use parameters::Value;
-use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Record};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster, ResultWindow};
 use pxpl5_scene::HmdConfig;
+use pxpl5_sim::parameters::Value;
 use pxpl5_sim::{Time, TraceHash, mix};
+use pxpl5_wire::display::Counter;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};

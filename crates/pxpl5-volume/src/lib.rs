@@ -40,10 +40,10 @@ pub use choices::{ClipKind, ProjectionKind, RendererKind};
 pub use error::VolumeError;
 pub use experiment::Volume;
 pub use numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
-pub use perspecta;
 pub use report::{Brightness, DisplayReport, ModelPart, ModelTimes, Override, PixelPlanesReport, VolumeReport};
 pub use settings::VolumeSettings;
 pub use spatialgl;
+pub use spatialgl::perspecta;
 pub use workers::Counted;
 
 /// Compiles and runs the example of the README.
