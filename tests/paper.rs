@@ -6,17 +6,8 @@ use serde_json::Value;
 const MAX_WORDS: usize = 1_200;
 
 /// Phrases with digits that are names, or sizes that a paper prints. No command produces them.
-const NAMES: [&str; 9] = [
-    "Pixel-Planes 5",
-    "i860",
-    "`pxpl5",
-    "128 x 128",
-    "gem5",
-    "208 bits",
-    "Figure 1",
-    "Figure 2",
-    "Ramulator2",
-];
+const NAMES: [&str; 9] =
+    ["Pixel-Planes 5", "i860", "`pxpl5", "128 x 128", "gem5", "208 bits", "Figure 1", "Figure 2", "Ramulator2"];
 
 fn read(name: &str) -> String {
     let path = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -85,10 +76,12 @@ fn results() -> Vec<String> {
     let accuracy = read("ACCURACY.md");
     // "The table has N figures, M of them free checks with a mean absolute error of E %; K are missed."
     let summary = accuracy.split("The table has ").nth(1).and_then(|rest| rest.split(".\n").next()).expect("a summary");
-    let counts: Vec<&str> = summary.split(|c: char| !c.is_ascii_digit() && c != '.').filter(|n| !n.is_empty()).collect();
+    let counts: Vec<&str> =
+        summary.split(|c: char| !c.is_ascii_digit() && c != '.').filter(|n| !n.is_empty()).collect();
     let [figures, free, mean_error, missed] = counts[..] else { panic!("{summary}") };
     let vectors = read("crates/i860/tests/conformance.rs");
-    let vectors = vectors.split("summary.failed()), (").nth(1).and_then(|rest| rest.split(',').next()).expect("a count");
+    let vectors =
+        vectors.split("summary.failed()), (").nth(1).and_then(|rest| rest.split(',').next()).expect("a count");
     let experiments = levels()["experiments"].as_u64().expect("a count");
     let triangles = pxpl5::scene::builtin("mig").expect("built in").triangles().len();
     let light = |pipeline| format!("{:.1} ms", compared(pipeline, "head_to_light_ms.mean"));

@@ -42,7 +42,8 @@ fn missing(package: &Value) -> Vec<String> {
     };
     let words = |key: &str| -> Vec<String> { serde_json::from_value(package[key].clone()).unwrap_or_default() };
     let keywords = words("keywords");
-    let is_valid = (1..=MAX_KEYWORDS).contains(&keywords.len()) && keywords.iter().all(|word| word.len() <= MAX_KEYWORD);
+    let is_valid =
+        (1..=MAX_KEYWORDS).contains(&keywords.len()) && keywords.iter().all(|word| word.len() <= MAX_KEYWORD);
     expect(is_valid, "one to five keywords of at most 20 characters");
     expect(!words("categories").is_empty(), "categories");
     expect(package["metadata"]["docs"]["rs"].is_object(), "package.metadata.docs.rs");

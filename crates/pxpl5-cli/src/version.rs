@@ -4,8 +4,7 @@
 pub(crate) use pxpl5::measure::program::VERSION;
 
 /// Version and shortened commit, for people.
-pub(crate) const LONG_VERSION: &str =
-    concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PXPL5_SHORT_COMMIT"), ")");
+pub(crate) const LONG_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PXPL5_SHORT_COMMIT"), ")");
 
 /// Returns the commit from which the command was built. Returns `None` if the build script found none.
 ///

@@ -51,7 +51,8 @@ fn reference(work: &Work) -> String {
 }
 
 fn authors(names: &[Name]) -> String {
-    let lines = names.iter().map(|(given, family)| format!("      - {{family-names: {family}, given-names: {given}}}\n"));
+    let lines =
+        names.iter().map(|(given, family)| format!("      - {{family-names: {family}, given-names: {given}}}\n"));
     lines.collect()
 }
 
