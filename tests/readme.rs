@@ -55,7 +55,8 @@ fn pages(folder: &str) -> Vec<String> {
 
 #[test]
 fn every_link_of_the_documents_leads_to_a_file() {
-    let own = ["README.md", "ARCHITECTURE.md", "ACCURACY.md", "CHANGELOG.md"].map(str::to_owned);
+    let own = ["README.md", "ARCHITECTURE.md", "ACCURACY.md", "CHANGELOG.md", "CONTRIBUTING.md", "paper/paper.md"];
+    let own = own.map(str::to_owned);
     for page in pages("docs").into_iter().chain(own) {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(&page);
         for link in links(&read(&page)) {
@@ -73,4 +74,21 @@ fn the_summary_of_the_guide_leaves_no_page_out() {
     {
         assert!(listed.contains(&page), "docs/SUMMARY.md lacks {page}");
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_table_of_scripts_has_each_script_once() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = format!("{}/scripts", env!("CARGO_MANIFEST_DIR"));
+    let entries = std::fs::read_dir(folder).expect("the scripts").map(|entry| entry.expect("readable"));
+    let programs = entries.filter(|entry| {
+        let data = entry.metadata().expect("readable");
+        data.is_file() && data.permissions().mode() & 0o111 != 0
+    });
+    let mut found: Vec<String> = programs.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    found.sort();
+    let text = read("scripts/README.md");
+    let rows = text.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
+    assert_eq!(rows.map(|(name, _)| name).collect::<Vec<_>>(), found);
 }

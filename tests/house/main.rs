@@ -5,6 +5,7 @@
 mod crates;
 mod document;
 mod modules;
+mod packages;
 mod prose;
 mod source;
 
@@ -172,6 +173,11 @@ fn no_text_becomes_harder_to_read() {
 #[test]
 fn architecture_describes_the_crates_as_they_are() {
     document::check(&workspace());
+}
+
+#[test]
+fn every_published_crate_has_what_a_registry_shows() {
+    packages::check();
 }
 
 /// Functions whose results depend on the library of the host. Square roots are exact everywhere.

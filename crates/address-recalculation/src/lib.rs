@@ -110,3 +110,8 @@ pub use protocol::{begin_update, face_region, orientation_message, region_grid, 
 pub use scan::{Latch, Scan};
 pub use texel::{DEPTH_FARTHEST, FaceSet, TexelFormat};
 pub use timing::{ArpTiming, ScanTiming};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -165,3 +165,8 @@ pub use shelf::DecodedPrograms;
 pub use state::State;
 pub use timing::{CHIP_PATH, Config};
 pub use trap::{RunEnd, Trap, TrapCause};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -70,3 +70,8 @@ pub use structure::{DisplayStructure, ModelFrame};
 pub use surrounding::{CubeTransform, CubeTransformOutput};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};
 pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -128,3 +128,8 @@ fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
     let display = display.ok_or_else(|| no_form("a display other than ntsc"))?;
     Video::new(display.video).map_err(|error| ConfigError::Board(error.to_string()))
 }
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

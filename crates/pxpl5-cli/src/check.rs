@@ -4,6 +4,7 @@ use crate::error::CliError;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
+use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::sweep::Sweep;
 use pxpl5::{ExperimentFile, Plan};
@@ -28,11 +29,11 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     let (plan, about) = if file.is_sweep() { of_sweep(file)? } else { (file.resolve()?, String::new()) };
     warn(&plan.warnings(), false);
     let scene = scenes::load(&plan, false)?;
-    let version = env!("CARGO_PKG_VERSION");
     let hash = plan.experiment(scene).config_hash();
     print(&format!(
-        "{about}# machine: {}\n# config_hash: {hash}\n# version: {version}\n# level: {}\n# seed: {}\n{}",
+        "{about}# machine: {}\n# config_hash: {hash}\n# version: {VERSION}\n# commit: {}\n# level: {}\n# seed: {}\n{}",
         plan.machine.preset,
+        commit_text(),
         plan.level_name(),
         plan.seed,
         plan.settings()

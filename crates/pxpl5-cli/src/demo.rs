@@ -8,6 +8,7 @@ use crate::run::{comparison, pictures};
 use crate::snapshot::{How, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::print;
+use crate::version::{VERSION, commit};
 use clap::Args;
 use pxpl5::{ExperimentFile, Outcome, Plan, Report, Results};
 use serde_json::{Value, json};
@@ -126,7 +127,7 @@ fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
         folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report).as_bytes())?;
     }
     let runs: Vec<Value> = runs.iter().map(entry).collect();
-    let all = json!({"schema": "pxpl5-demo/1", "version": env!("CARGO_PKG_VERSION"), "runs": runs});
+    let all = json!({"schema": "pxpl5-demo/1", "version": VERSION, "commit": commit(), "runs": runs});
     folder.put("report.json", format!("{all:#}\n").as_bytes())?;
     folder.commit()
 }

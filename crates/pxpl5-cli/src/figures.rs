@@ -9,6 +9,7 @@ use clap::Args;
 use pxpl5::Level;
 use pxpl5::arp::figures::Row;
 use pxpl5::figures::{Bench, FIGURES, FigureFamily, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
+use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -21,6 +22,7 @@ use std::path::{Path, PathBuf};
   pxpl5 figures --only 4,7               these figures, without their intervals
   pxpl5 figures --json
   pxpl5 figures --write ACCURACY.md
+  pxpl5 figures --chart errors.svg       errors with their intervals
   pxpl5 figures --check ACCURACY.md      fails if the file is out of date")]
 pub(crate) struct FiguresArgs {
     /// Print one JSON object.
@@ -32,9 +34,12 @@ pub(crate) struct FiguresArgs {
     /// Fail if this file differs from the document of all figures.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
+    /// Write a chart of the errors and their intervals (SVG) to this file.
+    #[arg(long, value_name = "FILE")]
+    chart: Option<PathBuf>,
     /// Measure only these figures of the main table, separated by commas. Each row is printed as soon as it is
     /// measured.
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json"])]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["write", "check", "json", "chart"])]
     only: Vec<String>,
     #[command(flatten)]
     budget: BudgetArgs,
@@ -47,11 +52,13 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     }
     args.budget.admit_study(Study::Figures, "measure some of them with --only")?;
     let file = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
+    let chart_file = args.chart.as_deref().map(|path| OutputFile::open(path, "--chart")).transpose()?;
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let figures = figures.map_err(CliError::failure)?;
     file.map(|file| file.write(markdown(&figures).as_bytes())).transpose()?;
+    chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // `--check` fails if the repository's document is stale.
     if let Some(path) = &args.check {
         fresh(path, &markdown(&figures), "figures")?;
@@ -158,6 +165,42 @@ fn own(rows: &[FigureRow]) -> String {
     rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
 }
 
+/// Width of the chart in millimetres: the text of a page.
+const CHART_MM: f64 = 165.0;
+
+/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are relative too.
+fn chart(rows: &[FigureRow]) -> Chart {
+    let series = |name: &str, look, is_free: bool| {
+        // Each row keeps the position of its number, so that the two series share the axis.
+        let chosen = rows.iter().enumerate().filter(|(_, row)| (row.standing == "free") == is_free);
+        let points = chosen.map(|(place, row)| ChartPoint {
+            at: (place as f64, row.error_percent),
+            interval: row.interval.map_or((f64::NAN, f64::NAN), |ends| relative(ends, row.published)),
+        });
+        ChartSeries { name: name.to_owned(), points: points.collect(), look }
+    };
+    Chart {
+        axes: ChartAxes {
+            title: "Simulated against published figures".to_owned(),
+            across: "figure of ACCURACY.md".to_owned(),
+            up: "error, per cent".to_owned(),
+        },
+        across: AxisScale::Names(rows.iter().map(|row| row.id.to_owned()).collect()),
+        up: AxisScale::Fitted,
+        series: vec![
+            series("free check", SeriesStyle::Points, true),
+            series("a parameter or rule was chosen for the figure", SeriesStyle::HollowPoints, false),
+        ],
+        size: ChartSize::Column { width_mm: CHART_MM },
+    }
+}
+
+/// Returns the ends of an interval relative to a published value, in percent.
+fn relative([low, high]: [f64; 2], published: f64) -> (f64, f64) {
+    let percent = |value: f64| 100.0 * (value - published) / published;
+    (percent(low), percent(high))
+}
+
 /// Formats a row of the main table.
 fn row_text(row: &FigureRow) -> String {
     let interval = row.interval.map_or(String::new(), |[low, high]| format!("{low:.2} to {high:.2}"));
@@ -166,4 +209,40 @@ fn row_text(row: &FigureRow) -> String {
         "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<10} {miss}{}\n",
         row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(id: &'static str, standing: &'static str, interval: Option<[f64; 2]>) -> FigureRow {
+        FigureRow {
+            id,
+            published: 50.0,
+            simulated: 51.0,
+            unit: "ms",
+            error_percent: 2.0,
+            analytic: None,
+            interval,
+            standing,
+            spread: None,
+            fitted: "",
+            source: String::new(),
+            statement: "",
+            experiment: "",
+            cause: "",
+            details: Vec::new(),
+            unprinted: None,
+        }
+    }
+
+    #[test]
+    fn the_chart_has_each_row_once_with_its_interval_in_percent() {
+        let chart = chart(&[row("1", "free", Some([45.0, 60.0])), row("2b", "rule", None)]);
+        assert_eq!(chart.across, AxisScale::Names(vec!["1".to_owned(), "2b".to_owned()]));
+        let [free, chosen] = [0, 1].map(|series| &chart.series[series].points);
+        assert_eq!((free.len(), free[0].at, free[0].interval), (1, (0.0, 2.0), (-10.0, 20.0)));
+        assert_eq!((chosen.len(), chosen[0].at), (1, (1.0, 2.0)));
+        assert!(chosen[0].interval.0.is_nan(), "a figure that was not varied has no interval");
+    }
 }

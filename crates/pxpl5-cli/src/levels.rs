@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
   pxpl5 levels
   pxpl5 levels --json
   pxpl5 levels --measure                                            measures everything again, on this computer
-  pxpl5 levels --measure --write docs/levels.json --chart docs/levels.svg
+  pxpl5 levels --measure --write crates/pxpl5-cli/src/levels.json --chart docs/levels.svg
   pxpl5 levels --measure --errors-only --experiments 1000           without speeds, which need an idle computer
   pxpl5 levels --scaling docs/scaling.md")]
 pub(crate) struct LevelsArgs {
@@ -50,7 +50,7 @@ pub(crate) struct LevelsArgs {
 }
 
 /// The recorded measurement of the levels of modelling, as JSON.
-const RECORD: &str = include_str!("../../../docs/levels.json");
+const RECORD: &str = include_str!("levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     // --scaling writes three tables and nothing else.
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn the_record_can_be_read_and_printed() {
-        let record = LevelRecord::read(RECORD).expect("docs/levels.json");
+        let record = LevelRecord::read(RECORD).expect("the recorded levels");
         assert!(record.experiments >= 200 && record.levels.len() == 5);
         let text = text(&record);
         assert!(record.levels.iter().all(|report| text.contains(report.advice())), "{text}");

@@ -15,6 +15,7 @@
 mod arp;
 mod budget;
 mod check;
+mod cite;
 mod compare;
 mod completions;
 mod debug;
@@ -48,6 +49,7 @@ mod table;
 mod terminal;
 mod too_heavy;
 mod trace;
+mod version;
 mod volume;
 
 /// The emulator, re-exported so that a crate with its own pipelines needs no other dependency.
@@ -63,7 +65,7 @@ use std::sync::Arc;
 ///
 /// Without a command, pxpl5 runs `pxpl5 demo`.
 #[derive(Parser, Debug)]
-#[command(name = "pxpl5", version, propagate_version = true, after_help = EXAMPLES)]
+#[command(name = "pxpl5", version = version::LONG_VERSION, propagate_version = true, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -122,6 +124,8 @@ enum Command {
     Arp(arp::ArpArgs),
     /// Assemble, disassemble and run programs of the graphics processor's CPU.
     I860(i860::I860Args),
+    /// Print how to cite the software and the papers.
+    Cite(cite::CiteArgs),
     /// Print a completion script for a shell.
     Completions(completions::CompletionsArgs),
 }
@@ -129,6 +133,7 @@ enum Command {
 /// Runs the command line of this process with the pipelines and displays of a registry, and returns the exit code.
 #[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
+    version::state_commit();
     // The options of pipelines must be known before clap builds the command line.
     options::know(registry);
     let cli = match Cli::try_parse() {
@@ -170,9 +175,15 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Volume(args)) => volume::run(args),
         Some(Command::Arp(args)) => arp::run(args),
         Some(Command::I860(args)) => i860::run(args),
+        Some(Command::Cite(args)) => cite::run(args),
         Some(Command::Completions(args)) => completions::run(args),
     }
 }
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
 
 #[cfg(test)]
 mod tests {

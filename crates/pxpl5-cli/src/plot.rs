@@ -9,6 +9,7 @@ use crate::numbers::{are, confidence, count_of};
 use crate::output::OutputFolder;
 use crate::rows::{self, ResultRows, RowsKind};
 use crate::terminal::{print, print_error, warn};
+use crate::version::{VERSION, commit};
 use formats::Format;
 use pxpl5::compare::CONFIDENCE;
 use pxpl5::results::csv_table;
@@ -206,7 +207,8 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     let only: Vec<String> = args.only.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let origin = json!({
         "schema": "pxpl5-plot/1",
-        "version": env!("CARGO_PKG_VERSION"),
+        "version": VERSION,
+        "commit": commit(),
         "results": args.results.display().to_string(),
         "x": args.x, "y": args.y, "by": args.by, "band": args.band, "where": only,
         "interval": "95 % of the mean, Student's t",

@@ -17,6 +17,7 @@ use crate::error::{BUSY, CliError};
 use crate::estimate::Estimate;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
+use crate::version::LONG_VERSION;
 use pxpl5::sweep::Sweep;
 use std::path::{Path, PathBuf};
 
@@ -221,7 +222,7 @@ impl Scripts {
         // The command is the executable of this process; PXPL5 in the environment of a job overrides the path.
         let Resources { tasks, threads, minutes, megabytes, merge_minutes, merge_megabytes } = resources;
         let Sample { points, mean_s, most_s, most_bytes } = sample;
-        let made = format!("# Written by pxpl5 {} (pxpl5 sweep --slurm).", env!("CARGO_PKG_VERSION"));
+        let made = format!("# Written by pxpl5 {LONG_VERSION} (pxpl5 sweep --slurm).");
         // Each task runs one shard, and retries while a lost copy of itself still holds the folder.
         let array = format!(
             "#!/bin/bash

@@ -162,8 +162,8 @@ fn result_files_open_with_preset_configuration_version_level_and_seed_and_tables
     assert!(text("results.csv").starts_with("quantity,value,definition\n"));
     assert!(text("pictures.csv").starts_with("picture,steady,complete,"));
     let saved: serde_json::Value = serde_json::from_slice(&read(&written, "report.json")).expect("JSON");
-    let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
-    assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
+    let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(7).collect();
+    assert_eq!(keys, ["schema", "version", "commit", "machine", "config_hash", "level", "seed"]);
     assert_eq!(saved["overrides"]["gp.triangle_ns"], 31_000);
     let svg = String::from_utf8(read(&written, "timeline.svg")).expect("text");
     assert!(svg.find(hash).is_some_and(|at| at < svg.find("<svg").expect("a drawing")), "the origin comes first");

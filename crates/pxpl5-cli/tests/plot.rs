@@ -76,6 +76,12 @@ fn a_result_that_was_not_evaluated_is_not_zero() {
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     assert!(table.ends_with("split,4,,,0,,,3\n"), "{table}");
     assert!(table.contains("whole,1,1.5,"), "{table}");
+    // A curve without a point has no name in the legend.
+    sweep(&folder, |copy, _, seed| if copy == "split" { Value::Null } else { json!(seed) });
+    let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "one.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    let svg = std::fs::read_to_string(folder.0.join("one.svg")).expect("written");
+    assert!(svg.contains("whole") && !svg.contains("split"), "{svg}");
     sweep(&folder, |_, _, _| Value::Null);
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "none.svg"]);
     assert_eq!(run.status.code(), Some(1));

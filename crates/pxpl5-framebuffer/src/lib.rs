@@ -86,3 +86,8 @@ pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 pub use video::Video;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

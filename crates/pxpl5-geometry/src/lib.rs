@@ -122,3 +122,8 @@ pub use touched::Touched;
 pub use transform::{Culling, Transform, TriangleEnds};
 pub use vertex::{ScreenVertex, SurfaceVertex};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

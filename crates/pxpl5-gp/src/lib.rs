@@ -59,3 +59,8 @@ pub use processor::{BreakpointHit, CodeVersion, KEPT_HITS, Processor, ProcessorF
 pub use timing::{CodeUse, GpTiming, HostTiming};
 pub use window::RING_MEMORY;
 pub use work::Work;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

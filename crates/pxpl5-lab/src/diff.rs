@@ -40,9 +40,10 @@ pub struct Differences {
 }
 
 /// First parts of the paths that denote settings. All other paths denote results.
-const SETTINGS: [&str; 16] = [
+const SETTINGS: [&str; 17] = [
     "schema",
     "version",
+    "commit",
     "machine",
     "level",
     "seed",

@@ -3,6 +3,7 @@
 //! A folder may hold files of several runs and files of the user. The manifest distinguishes them. Readers trust only
 //! files that are listed and unchanged. The next run removes the listed files that it does not write again.
 
+use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -27,6 +28,9 @@ pub struct ManifestEntry {
 pub struct Manifest {
     schema: String,
     version: String,
+    /// Commit from which the writing program was built, if known. Manifests of earlier programs have none.
+    #[serde(default)]
+    commit: Option<String>,
     command: String,
     files: Vec<ManifestEntry>,
     /// Files of the previous manifest that will be removed after this manifest is written. After a crash these files
@@ -89,7 +93,8 @@ impl Manifest {
     pub fn new(command: &str) -> Self {
         Self {
             schema: Self::SCHEMA.to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: program::VERSION.to_owned(),
+            commit: program::commit().map(str::to_owned),
             command: command.to_owned(),
             files: Vec::new(),
             replaced: Vec::new(),

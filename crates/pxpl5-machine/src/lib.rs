@@ -41,3 +41,8 @@ pub use record::Record;
 pub use run_error::RunError;
 pub use savings::Optimization;
 pub use traffic::{Traffic, Transfer};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

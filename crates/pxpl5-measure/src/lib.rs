@@ -33,6 +33,7 @@ mod moved;
 mod percentiles;
 mod picture_mover;
 mod pictures;
+pub mod program;
 mod quantity;
 mod raster;
 mod registration;
@@ -76,3 +77,8 @@ pub use turn_sum::RotationPart;
 pub use utilisation::{
     GpUtilisation, PortShare, PortUtilisation, RendererUtilisation, RingUtilisation, Shares, Utilisation,
 };
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

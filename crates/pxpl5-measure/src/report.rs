@@ -7,6 +7,7 @@ use crate::eye_report::EyeReport;
 use crate::faces_report::FacesReport;
 use crate::head_results::{errors_and_eye, missing_results_warning};
 use crate::latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use crate::program;
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
 use pxpl5_machine::{LateRegion, Record};
@@ -27,6 +28,8 @@ pub struct Report {
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
+    /// Commit from which the program was built. `None` if the program does not know its commit.
+    pub commit: Option<String>,
     /// Name of the machine's preset.
     pub machine: String,
     /// Hash of all settings that the trace depends on ([`pxpl5_run::Experiment::config_hash`]).
@@ -216,7 +219,8 @@ impl Report {
         let mut report = Self {
             // Identity of the run.
             schema: Self::SCHEMA.to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: program::VERSION.to_owned(),
+            commit: program::commit().map(str::to_owned),
             machine: config.preset.clone(),
             config_hash: experiment.config_hash().to_string(),
             level: experiment.modelling_level().name().to_owned(),

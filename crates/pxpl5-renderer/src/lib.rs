@@ -79,3 +79,8 @@ pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
 pub use look::RendererSnapshot;
 pub use simd::Vectors;
 pub use timing::RendererTiming;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -73,3 +73,8 @@ pub use port::{Request, RingError, RingEvent, RingOutput};
 pub use ring::Ring;
 pub use stats::{Refusals, RingStats, WaitReason, WaitingMessage};
 pub use timing::RingTiming;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -99,3 +99,8 @@ pub use summary::{Summary, retraces};
 pub use sums::{FinalResults, ObserverFactory, StreamingObserver};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

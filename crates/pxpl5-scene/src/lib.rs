@@ -83,3 +83,8 @@ pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
 pub use tracking::Pose;
 pub use view::{EyePoint, Hmd, HmdConfig, View};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -45,3 +45,8 @@ pub use queue::{EventQueue, Phase};
 pub use random::SplitMix64;
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

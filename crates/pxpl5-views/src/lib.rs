@@ -47,3 +47,8 @@ pub use animation::Animation;
 pub use film::{FILM_PERIODS, Film, FilmError, FilmSurfaces};
 pub use frame_time::frame_seconds;
 pub use picture::{PngError, png_bytes};
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

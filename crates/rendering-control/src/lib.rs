@@ -41,3 +41,8 @@ pub use config::RenderingControlConfig;
 pub use host::host;
 pub use master::master;
 pub use slave::slave;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -53,3 +53,8 @@ pub use error::SlatsConfigError;
 pub use host::host;
 pub use processor::{CLUMP, processor};
 pub use schedule::CopySchedule;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

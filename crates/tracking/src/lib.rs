@@ -87,3 +87,8 @@ pub mod view;
 pub use error::SettingError;
 pub use identity::SettingSink;
 pub use pose::Pose;
+
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -5,6 +5,7 @@ use crate::error::CliError;
 use crate::numbers::count_of;
 use crate::output::OutputFolder;
 use crate::terminal::{advance, print, progress};
+use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::arp::pictures::of_walk;
 use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
@@ -64,7 +65,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     let report = &outcome.report;
     let settings: Vec<String> = report.settings.iter().map(|(path, value)| format!("{path}={value}")).collect();
     vec![
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", VERSION.to_owned()),
+        ("commit", commit_text().to_owned()),
         ("scene", report.scene.clone()),
         ("frames", report.frames.to_string()),
         ("m_per_s", report.m_per_s.to_string()),

@@ -13,7 +13,8 @@ pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
             curves.push(&group.by);
         }
     }
-    let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).collect();
+    // A name in the legend without a point would look like a point that another one covers.
+    let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).filter(has_a_point).collect();
     let axes = ChartAxes {
         title: args.title.clone(),
         across: args.x_label.clone().unwrap_or_else(|| args.x.clone()),
@@ -35,6 +36,10 @@ fn names_across(groups: &[Group]) -> Option<Vec<String>> {
         }
     }
     Some(names)
+}
+
+fn has_a_point(series: &ChartSeries) -> bool {
+    series.points.iter().any(|point| point.at.0.is_finite() && point.at.1.is_finite())
 }
 
 fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> ChartSeries {

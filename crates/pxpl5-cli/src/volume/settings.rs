@@ -7,6 +7,7 @@ use crate::estimate::{Estimate, VolumeWork};
 use crate::numbers::whole;
 use crate::scenes;
 use crate::terminal::{advance, progress, warn};
+use crate::version::{VERSION, commit_text};
 use clap::Args;
 use image::RgbImage;
 use pxpl5::scene::{Placement, Scene};
@@ -187,7 +188,8 @@ pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
     let settings = &volume.settings;
     let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();
     vec![
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", VERSION.to_owned()),
+        ("commit", commit_text().to_owned()),
         ("scene", volume.scene.clone()),
         ("clip", settings.clip_text()),
         ("projection", settings.projection_text().to_owned()),

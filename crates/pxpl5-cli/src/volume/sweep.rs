@@ -10,6 +10,7 @@ use crate::leaves::plain;
 use crate::numbers::whole;
 use crate::sweep::{report_failures, report_rows_path, shard};
 use crate::terminal::progress;
+use crate::version::VERSION;
 use clap::Args;
 use pxpl5::Fingerprint;
 use pxpl5::scene::Scene;
@@ -137,7 +138,7 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
         })
         .collect();
     // The hash also covers the contents of model files, so that a changed file is not resumed.
-    let version = env!("CARGO_PKG_VERSION");
+    let version = VERSION;
     let inputs: Vec<String> = scene_files(space).iter().map(|path| of_contents(path)).collect();
     // The hash covers everything that determines the rows.
     let named = json!([version, settings, axes, measure, inputs]).to_string();

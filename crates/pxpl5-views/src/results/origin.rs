@@ -3,12 +3,12 @@
 use pxpl5_measure::Report;
 use std::fmt::Write;
 
-/// Returns the origin of a report as pairs of key and value: preset, configuration hash, version, level, seed and
-/// experiment.
+/// Returns the origin of a report as pairs of key and value: preset, configuration hash, version, commit, level, seed
+/// and experiment. The commit is missing if the program does not know its commit.
 #[must_use]
 pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
-    vec![
+    let mut pairs = vec![
         ("machine", report.machine.clone()),
         ("config_hash", report.config_hash.clone()),
         ("version", report.version.clone()),
@@ -20,7 +20,9 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
         ("overrides", overrides.join(" ")),
         ("scene", format!("{}, {} triangles, {} spheres", report.scene, report.triangles, report.spheres)),
         ("fields", report.fields.to_string()),
-    ]
+    ];
+    pairs.extend(report.commit.clone().map(|commit| ("commit", commit)));
+    pairs
 }
 
 /// Returns the origin of a report as text. Each line begins with `mark`, a comment marker such as `# `.
