@@ -1,9 +1,9 @@
 //! Snapshots of a renderer during a run.
 
-use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
+use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear, words_before_copy};
 use crate::{Lanes, Layout, PixelArray};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandContent, CopyOrder, Message};
+use pxpl5_wire::{Body, CommandContent, CopyOrder, CopyPath, Message, RegionPlace};
 use std::collections::VecDeque;
 
 /// A snapshot of a renderer board.
@@ -17,6 +17,9 @@ pub struct RendererSnapshot {
     pub stands_at_copy: bool,
     /// The copy whose region is on its way to a frame buffer, if there is one.
     pub copying: Option<CopyOrder>,
+    /// Region for which the last started commands draw, until its copy command starts. `None` if the FIFO is not
+    /// watched, or if the sender of the commands does not state the region.
+    pub drawing: Option<RegionPlace>,
     /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,
     /// Time spent executing commands since the start of the run, without copies. A received command counts at once,
@@ -36,6 +39,9 @@ struct SentList {
     /// Index of the first word of the clear at the beginning of the list, counted since the start of the run. `None` if
     /// the list does not begin with a clear.
     clear: Option<u64>,
+    /// Index of the first word of the copy command that ends the region, counted since the start of the run. `None`
+    /// until this command is received.
+    copy: Option<u64>,
     content: CommandContent,
 }
 
@@ -43,11 +49,26 @@ impl SentLists {
     /// Adds the list of a received message. `started` is the number of words in commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
-        let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
-        let clear = words_before_clear(&list.runs).map(|words| first_word + words);
-        self.forget(started);
-        self.0.push_back(SentList { context, first_word, clear, content });
+        if let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) {
+            let clear = words_before_clear(&list.runs).map(|words| first_word + words);
+            self.forget(started);
+            self.0.push_back(SentList { context, first_word, clear, copy: None, content });
+        }
+        // A copy from pixel memory ends the region of its context, in this list or in earlier ones.
+        let Some(before) = words_before_copy(&list.runs) else { return };
+        let from_pixels = list.copies.iter().filter(|order| order.way != CopyPath::FromBacking);
+        let copied: Vec<usize> = from_pixels.map(|order| usize::from(order.context) % MAX_CONTEXTS).collect();
+        let open = self.0.iter_mut().filter(|list| list.copy.is_none() && copied.contains(&list.context));
+        open.for_each(|list| list.copy = Some(first_word + before));
+    }
+
+    /// Returns the region for which the last started list draws. `started` is the number of words in commands that
+    /// have started. Returns `None` if the copy command of the region has started.
+    pub(crate) fn drawing(&self, started: u64) -> Option<RegionPlace> {
+        let last = self.0.iter().rfind(|list| list.first_word < started)?;
+        let is_copied = last.copy.is_some_and(|copy| copy < started);
+        if is_copied { None } else { last.content.place() }
     }
 
     /// Drops the lists whose pixels have been erased by a clear that has started.

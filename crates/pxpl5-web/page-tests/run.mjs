@@ -6,6 +6,7 @@ import { createServer } from "node:http";
 import { existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { dirname, extname, join, normalize, resolve } from "node:path";
 import assert from "node:assert/strict";
+import { Checkpoints } from "../page/checkpoints.js";
 import { packed, samplesOf } from "../page/recording.js";
 import { STORIES } from "../page/stories.js";
 
@@ -380,6 +381,144 @@ const TESTS = {
     await open("#pipeline=slats&fields=12&head.motion=live.csv&at=150000000000");
     assert.equal(await text("hash"), hash);
   },
+  async "checkpoints put a memory back bit for bit, and keep their bounds"() {
+    const memory = new WebAssembly.Memory({ initial: 4 });
+    const limits = { every: 10, work: Infinity, bytes: 40 * 4096, count: 12, lost: 50 * 65536 };
+    const checkpoints = new Checkpoints(memory, limits);
+    let seed = 1;
+    const random = (below) => (seed = (seed * 48271) % 2147483647) % below;
+    const images = new Map();
+    let [now, backs] = [0, 0];
+    for (let step = 0; step < 3000; step += 1) {
+      const bytes = new Uint8Array(memory.buffer);
+      for (let n = 0; n < 6; n += 1) bytes[random(bytes.length)] = random(256);
+      if (random(200) === 0) memory.grow(1);
+      now += 1 + random(7);
+      if (checkpoints.take(now, step)) images.set(now, bytes.slice());
+      assert.ok(checkpoints.bytes <= limits.bytes && checkpoints.all.length <= limits.count);
+      if (random(40) > 0) continue;
+      const to = now - random(400);
+      const expected = checkpoints.all.findLast(({ at }) => at <= to);
+      const found = checkpoints.back(to);
+      assert.equal(found?.at, expected?.at);
+      if (!found) continue;
+      const image = images.get(found.at);
+      assert.ok(Buffer.from(memory.buffer, 0, image.length).equals(Buffer.from(image)));
+      now = found.at;
+      backs += 1;
+    }
+    assert.ok(backs > 20, `${backs}`);
+    // Recent checkpoints stay as close together as they were taken.
+    const steady = new Checkpoints(memory, { ...limits, bytes: Infinity });
+    for (let at = 0; at <= 10000; at += 10) steady.take(at, null);
+    const ages = steady.all.map(({ at }) => 10000 - at);
+    assert.equal(ages.length, limits.count);
+    assert.deepEqual(ages.slice(-3), [20, 10, 0]);
+    assert.ok(ages.every((age, n) => n === 0 || ages[n - 1] - age <= 10 + 0.9 * ages[n - 1]), `${ages}`);
+    // A return that would lose too much is refused.
+    const small = new Checkpoints(new WebAssembly.Memory({ initial: 1 }), { ...limits, lost: 65536 });
+    small.take(0, "begin");
+    small.memory.grow(2);
+    assert.equal(small.back(5), null);
+  },
+  async "a step back shows the same pictures bit for bit, and runs little again"() {
+    const look = () => run(`return JSON.stringify([
+      document.getElementById('hash').textContent, document.getElementById('time').dataset.ps,
+      [...document.querySelectorAll('#eyes .seen canvas')].map((canvas) => canvas.toDataURL()),
+      [...document.querySelectorAll('#diagram .block')].map((block) => block.textContent)])`);
+    for (const [hash, fields] of [
+      ["pipeline=slats&beside=rendering-control&scene=aircraft&head.motion=live.csv&fields=600", 4],
+      ["pipeline=jitp-scanline&scene=aircraft&triangles=30&head.motion=sine:20:0.5&fields=600", 3],
+      ["pipeline=arp-priority-pixel&display=arp&scene=gallery&head.motion=sine:20:0.5&fields=600", 3],
+    ]) {
+      await open(`#${hash}&at=3700000000000`);
+      const seen = [];
+      for (let n = 0; n <= fields; n += 1) {
+        await press('[data-step="field"]');
+        seen.push(await look());
+      }
+      for (let n = fields - 1; n >= 0; n -= 1) {
+        await press("#back");
+        assert.equal(await look(), seen[n], `${hash}, ${n} fields after the begin`);
+        const repeated = (await run("return Number(document.documentElement.dataset.repeatedPs)")) / 1e9;
+        // A second between checkpoints, and the piece of the run at whose end one is taken.
+        assert.ok(repeated <= 1300, `${repeated} ms are run again`);
+      }
+      // From the begin on it is the same run, and forth from there too.
+      await press("#rewind");
+      assert.equal(await shownMs(), 0);
+      await run(`location.hash = ${JSON.stringify(hash)} + '&at=3700000000000'`);
+      await until("the run", "document.getElementById('time').dataset.ps === '3700000000000'", 60000);
+      await settled();
+      await press('[data-step="field"]');
+      assert.equal(await look(), seen[0]);
+      console.log(`   ${hash.split("&")[0]}: ${fields} steps back, memory ${await text("bytes")}`);
+    }
+  },
+  async "a step back after a long run is short, and the memory is bounded"() {
+    await open("#pipeline=slats&scene=aircraft&fields=1000000&at=120000000000000");
+    await until("the run", "document.getElementById('time').dataset.ps === '120000000000000'", 240000);
+    await settled();
+    const begun = await shownMs();
+    for (let n = 0; n < 5; n += 1) {
+      await press("#back");
+      const repeated = (await run("return Number(document.documentElement.dataset.repeatedPs)")) / 1e9;
+      assert.ok(repeated <= 1300, `${repeated} ms are run again`);
+    }
+    assert.ok(Math.abs(begun - (await shownMs()) - 5 * 16.683333) < 0.01);
+    assert.ok(parseInt(await text("bytes"), 10) < 200);
+  },
+  async "in RENDER and COPY the regions that are drawn and copied are marked in two colours, with a legend"() {
+    const colours = `
+      const data = document.querySelector('#eyes .over').getContext('2d').getImageData(0, 0, 640, 480).data;
+      const near = (at, [r, g, b]) => data[at + 3] > 200 && Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) < 24;
+      const count = [0, 0];
+      for (let at = 0; at < data.length; at += 4) [[127, 214, 168], [255, 209, 102]].forEach((colour, n) => near(at, colour) && (count[n] += 1));
+      return count`;
+    await open("#story=inside&step=4");
+    await until("RENDER", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);
+    await settled();
+    const [drawn] = await run(colours);
+    await click("#story-next");
+    await until("COPY", "document.documentElement.dataset.story === 'inside 5 paused'", 60000);
+    await settled();
+    const [also, copied] = await run(colours);
+    console.log(`   marked pixels: drawn ${drawn} in RENDER, drawn ${also} and copied ${copied} in COPY`);
+    assert.ok(drawn > 200 && copied > 200);
+    assert.match(await text("region-legend"), /drawing.*on its way/s);
+    assert.ok(await run("return document.getElementById('region-legend').checkVisibility()"));
+  },
+  async "where nothing is shown, the page says why and what would fit, and builds it"() {
+    for (const [hash, name, least, most] of [["pipeline=slats&scene=mig", "Slats", 130, 160], ["pipeline=jitp-scanline&scene=aircraft", "jitp-scanline", 10, 60]]) {
+      await open(`#${hash}&fields=600&head.motion=sine:10:0.5&at=600000000000`);
+      await until("a number", "document.querySelector('#heavy button')", 60000);
+      console.log(`   ${await text("heavy")}`);
+      const [, would] = /About ([\d,]+) would do/.exec(await text("heavy"));
+      assert.ok((await text("heavy")).startsWith(`${name} finishes no picture in time`));
+      assert.ok(Number(would) >= least && Number(would) <= most, would);
+      assert.doesNotMatch(await run("return document.body.innerText"), /NaN|undefined|Infinity/);
+      await press("#heavy button");
+      for (let n = 0; n < 12; n += 1) await press('[data-step="field"]');
+      assert.ok((await lit()) > 1, "something is shown");
+      assert.ok(await run("return document.getElementById('heavy').hidden"));
+    }
+  },
+  async "the laboratory shows the waits of the pictures and the use of the boards"() {
+    await open("#pipeline=rendering-control&beside=slats&scene=aircraft&fields=600");
+    assert.match(await text("limits"), /No complete picture has been shown yet.*No time has passed yet/);
+    await run("location.hash = 'pipeline=rendering-control&beside=slats&scene=aircraft&fields=600&at=900000000000'");
+    await until("the run", "document.getElementById('time').dataset.ps === '900000000000'");
+    await settled();
+    const [limited, shares] = await run(`return [
+      [...document.querySelectorAll('#limits > div > p')].map((p) => p.textContent),
+      [...document.querySelectorAll('#limits > div')].map((part) => [...part.querySelectorAll('table:first-of-type tbody td:nth-child(2)')].map((cell) => parseFloat(cell.textContent)))]`);
+    limited.forEach((sentence) => assert.match(sentence, /^Limited by .*, \d+ % of the latency/));
+    assert.equal(limited.length, 2);
+    // Each share is rounded to a whole number.
+    for (const all of shares) assert.ok(Math.abs(all.reduce((sum, share) => sum + share, 0) - 100) <= all.length / 2 + 0.1, `${all}`);
+    console.log(`   ${limited.join("\n   ")}`);
+    await accessible("the block of limits");
+  },
   async "picture, report and timeline can be saved"() {
     await open("#pipeline=slats&beside=rendering-control&scene=aircraft&head.motion=sine:5:0.5&fields=120&at=500000000000");
     await run(`window.saved = []; const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.saved.push(blob); return make(blob); };
@@ -667,9 +806,21 @@ const TESTS = {
     await picture("faces-1280", 1280, 4000);
     await ask("POST", `${session}/url`, { url: new URL("../docs/gallery.html", page).href });
     await picture("gallery-1280", 1280, 4200);
+    await open("#pipeline=slats&scene=mig&fields=600&head.motion=sine:10:0.5&at=600000000000");
+    await until("a number", "document.querySelector('#heavy button')", 60000);
+    await picture("heavy-1280", 1280, 1800);
+    await picture("heavy-390", 390, 1800);
     await ask("POST", `${session}/url`, { url: new URL("../docs/index.html", page).href });
     await picture("book-1280", 1280, 1200);
     await picture("book-390", 390, 1200);
+  },
+  async "the search of the book finds a word and the page that explains it"() {
+    await ask("POST", `${session}/goog/cdp/execute`, { cmd: "Emulation.clearDeviceMetricsOverride", params: {} });
+    await ask("POST", `${session}/url`, { url: new URL("../docs/index.html?search=clump", page).href });
+    await until("results", "document.querySelectorAll('#mdbook-searchresults a, #searchresults a').length > 0");
+    const links = await run("return [...document.querySelectorAll('#mdbook-searchresults a, #searchresults a')].map((link) => link.getAttribute('href'))");
+    console.log(`   ${links.length} results, the first: ${links[0]}`);
+    assert.ok(links.some((link) => link.includes("glossary.html")), `${links}`);
   },
   async "every link of the site leads to a page and a place on it"() {
     const wrong = brokenLinks(site);

@@ -65,7 +65,10 @@ export function layOutEyes(place, states, names, record) {
   return machines;
 }
 
-/** Draws over a picture: the wire frame of the world now, regions on their way, and the beam's line (null for none). */
+/** Colours of regions by stage, the same as in the block diagram. */
+const REGION_COLOURS = { render: "#7fd6a8", copy: "#ffd166" };
+
+/** Draws over a picture: the wire frame of the world now, regions that are drawn or copied, and the beam's line (null for none). */
 export function drawOver(over, { wire, regions, line }) {
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
@@ -77,11 +80,13 @@ export function drawOver(over, { wire, regions, line }) {
     for (let x = 0; x <= thick; x += 1) for (let y = 0; y <= thick; y += 1) context.drawImage(lines, x - thick / 2, y - thick / 2);
   }
   context.lineWidth = Math.max(3, over.width / 160);
-  for (const { rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
+  for (const { stage, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
     const box = [left, first + top * step, width, Math.max(2, height * step)];
-    context.fillStyle = "rgba(255, 209, 102, .28)";
+    context.fillStyle = `${REGION_COLOURS[stage]}40`;
     context.fillRect(...box);
-    context.strokeStyle = "#ffd166";
+    context.strokeStyle = REGION_COLOURS[stage];
+    // Dashes tell the stages apart without colours.
+    context.setLineDash(stage === "render" ? [over.width / 40, over.width / 80] : []);
     context.strokeRect(...box);
   }
   if (line !== null && line !== undefined) {

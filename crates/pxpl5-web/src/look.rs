@@ -4,7 +4,9 @@ use crate::code;
 use crate::diagram;
 use crate::pictures;
 use pxpl5_machine::Board;
-use pxpl5_run::{LATENCY_PARTS, Stepper};
+use pxpl5_measure::{CriticalPath, Utilisation};
+use pxpl5_run::{LATENCY_PARTS, PictureTimes, Stepper, WARM_UP_PICTURES};
+use pxpl5_sim::Time;
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
@@ -17,6 +19,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     json!({
         "now_ps": stepper.now().0,
         "end_ps": stepper.end().0,
+        "back_ps": back(stepper).map(|at| at.0),
         "field": stepper.period().0,
         "fields": stepper.experiment().length(),
         "line": stepper.beam_line(),
@@ -27,7 +30,44 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "config_hash": stepper.experiment().config_hash().to_string(),
         "surfaces": surfaces.collect::<Vec<_>>(),
         "memories": pictures::memories(stepper),
+        "misses_all": misses_all(stepper),
     })
+}
+
+/// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
+/// step leads to the begin of the period before. From within a period, it leads to the same place of the period before,
+/// or to time zero.
+fn back(stepper: &Stepper) -> Option<Time> {
+    let (now, period) = (stepper.now(), stepper.period());
+    let tick = |period| stepper.record().tick(period);
+    if now == Time::ZERO {
+        return None;
+    }
+    let Some(before) = period.before(1) else { return Some(Time::ZERO) };
+    Some(tick(before) + now.since(tick(period)))
+}
+
+/// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+fn misses_all(stepper: &Stepper) -> bool {
+    let run = stepper.so_far();
+    run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
+}
+
+/// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1.
+/// `utilisation` is null at time zero, and `path` is null before the first complete picture.
+pub(crate) fn limits(stepper: &Stepper) -> Value {
+    let path = CriticalPath::so_far(&stepper.so_far());
+    let path = path.map(|path| {
+        let parts = path.parts.iter();
+        let parts: Vec<Value> = parts
+            .map(|part| json!({"what": part.resource.about(), "share": part.share, "ms": part.ms, "board": part.board}))
+            .collect();
+        json!({
+            "pictures": path.pictures, "latency_ms": path.latency_ms, "limited_by": path.limited_by, "parts": parts,
+            "chain": path.chain,
+        })
+    });
+    json!({"utilisation": Utilisation::so_far(stepper), "path": path})
 }
 
 /// Returns the message on each channel of the ring as JSON, with null for a free channel.
