@@ -105,3 +105,73 @@ impl SentLists {
         Some(array)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::CommandKind;
+    use pxpl5_wire::{
+        CommandList, CommandRun, CommandWords, CopyContent, CopyTarget, Lines, NodeId, PictureNumber, RegionGrid,
+        RegionId, Word,
+    };
+    use std::sync::Arc;
+
+    #[derive(Debug)]
+    struct Placed(u16);
+
+    impl CommandWords for Placed {
+        fn append_words(&self, _: u32, _: &mut Vec<Word>) {}
+
+        fn place(&self) -> Option<RegionPlace> {
+            let region = RegionId(self.0);
+            Some(RegionPlace { frame_buffer: None, lines: Lines::Frame, grid: RegionGrid::FRAME, region })
+        }
+    }
+
+    const PORT: NodeId = NodeId(7);
+
+    fn message(kinds: &[CommandKind], region: u16, way: Option<CopyPath>) -> Message {
+        let runs = kinds.iter().map(|kind| CommandRun { opcode: kind.opcode(), words_each: kind.words(), count: 1 });
+        let target = CopyTarget {
+            frame_buffer: PORT,
+            buffer: 0,
+            lines: Lines::Frame,
+            grid: RegionGrid::FRAME,
+            region: RegionId(region),
+            picture: PictureNumber(0),
+        };
+        let order = |way| CopyOrder { target, context: 0, way, content: CopyContent::Colour, acknowledge: None };
+        let list = CommandList {
+            runs: runs.collect(),
+            context: 0,
+            copies: way.map(order).into_iter().collect(),
+            content: Some(CommandContent::new(Arc::new(Placed(region)), 0)),
+        };
+        let list = list.for_frame_buffer(PORT);
+        Message { source: NodeId(0), destination: NodeId(1), words: list.words(), body: Body::Commands(list) }
+    }
+
+    /// A renderer draws a region from the first started command until its copy command starts. The release of another
+    /// region from the backing store does not end the region.
+    #[test]
+    fn a_region_is_drawn_from_its_first_command_to_its_copy_command() {
+        let [select, clear, triangle, copy] =
+            [CommandKind::SelectRegion, CommandKind::Clear, CommandKind::Triangle, CommandKind::CopyRegion];
+        let mut sent = SentLists::default();
+        let drawn = message(&[select, clear, triangle], 3, None);
+        sent.add(&drawn, 0, 0);
+        assert_eq!(sent.drawing(0), None, "no command has started");
+        let place = sent.drawing(1).expect("the region is drawn");
+        assert_eq!((place.region, place.frame_buffer), (RegionId(3), Some(PORT)));
+        let end = u64::from(drawn.words);
+        let released = message(&[select, copy], 2, Some(CopyPath::FromBacking));
+        sent.add(&released, end, 1);
+        let later = end + u64::from(released.words);
+        assert_eq!(sent.drawing(later), Some(place));
+        let copied = message(&[select, copy], 3, Some(CopyPath::FromPixelMemory));
+        sent.add(&copied, later, later);
+        let copy_word = later + u64::from(select.words());
+        assert_eq!(sent.drawing(copy_word), Some(place));
+        assert_eq!(sent.drawing(copy_word + 1), None, "the copy command has started");
+    }
+}

@@ -22,6 +22,8 @@ const OTHERS = ["beside", "motion", "at", "story", "step"];
 const RECORDED = "recorded.csv";
 /** The same of a head that is moved while the machine runs. */
 const LIVE = "live.csv";
+/** Names of motions in the list, where the setting itself says too little. */
+const MOTION_NAMES = { "": "scene's own", [LIVE]: "live: you move it", "synthetic:1": "synthetic:1 (computed viewer)" };
 /** Most simulated time of one piece, picoseconds: four fields. */
 const LONGEST = 66.7e9;
 /** Milliseconds between two looks at boards and errors, and at timeline and latency. */
@@ -150,6 +152,8 @@ function mark() {
   const names = [...KEYS, "beside"].filter((key) => (wanted[key] ?? "") !== (built[key] ?? ""));
   for (const key of [...KEYS, "beside"]) form.elements[key].closest("label").classList.toggle("changed", names.includes(key));
   at("build").classList.toggle("main", names.length > 0);
+  const chosen = ["scene", "pipeline", "head.motion"].map((key) => [form.elements[key].closest("label").textContent.trim().split(/\s/)[0], form.elements[key].selectedOptions[0]?.title]);
+  at("about").textContent = chosen.filter(([, about]) => about).map(([name, about]) => `${name}: ${about.replace(/\.$/, "")}.`).join(" ");
   at("changed").textContent = names.length > 0 ? "Changed: press Build, the pictures above are of the settings before." : "";
 }
 
@@ -1010,7 +1014,7 @@ try {
   choices("beside", [none, ...catalog.pipelines]);
   choices("scene", catalog.scenes);
   choices("display", catalog.displays.map((name) => ({ name })));
-  choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name === LIVE ? "live: you move it" : one.name || "scene's own" })));
+  choices("head.motion", catalog.motions.map((one) => ({ ...one, label: MOTION_NAMES[one.name] ?? one.name })));
   choices("head.tracker", [{ name: "", label: "usual" }, ...catalog.trackers.map((name) => ({ name }))]);
   choices("head.predict", [{ name: "", label: "usual" }, ...catalog.predictors.map((name) => ({ name }))]);
   choices("level", [{ name: "", label: "transaction" }, { name: "cycle", about: glossary["cycle level"] }]);
