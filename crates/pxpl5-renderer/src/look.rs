@@ -17,6 +17,8 @@ pub struct RendererSnapshot {
     pub stands_at_copy: bool,
     /// The copy whose region is on its way to a frame buffer, if there is one.
     pub copying: Option<CopyOrder>,
+    /// True while the controller executes commands other than copies.
+    pub executing: bool,
     /// Region for which the last started commands draw, until its copy command starts. `None` if the FIFO is not
     /// watched, or if the sender of the commands does not state the region.
     pub drawing: Option<RegionPlace>,
@@ -25,6 +27,14 @@ pub struct RendererSnapshot {
     /// Time spent executing commands since the start of the run, without copies. A received command counts at once,
     /// even before it is executed.
     pub busy: Span,
+}
+
+impl RendererSnapshot {
+    /// Returns true while the controller executes commands other than copies, or has them in its FIFO.
+    #[must_use]
+    pub fn works(&self) -> bool {
+        self.executing || self.fifo_words.is_some_and(|words| words > 0)
+    }
 }
 
 /// Received command lists whose effects are visible in pixel memory now or later.

@@ -80,9 +80,10 @@ export function drawOver(over, { wire, regions, line }) {
     for (let x = 0; x <= thick; x += 1) for (let y = 0; y <= thick; y += 1) context.drawImage(lines, x - thick / 2, y - thick / 2);
   }
   context.lineWidth = Math.max(3, over.width / 160);
-  for (const { stage, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
+  for (const { stage, works, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
     const box = [left, first + top * step, width, Math.max(2, height * step)];
-    context.fillStyle = `${REGION_COLOURS[stage]}40`;
+    // A region whose renderer waits has only a frame.
+    context.fillStyle = `${REGION_COLOURS[stage]}${works ? "59" : "00"}`;
     context.fillRect(...box);
     context.strokeStyle = REGION_COLOURS[stage];
     // Dashes tell the stages apart without colours.

@@ -539,7 +539,7 @@ function pause() {
   running = false;
   at("go").textContent = "Run";
   at("go").setAttribute("aria-pressed", "false");
-  at("speed").textContent = "stands";
+  at("speed").textContent = "paused";
   runs += 1;
 }
 

@@ -114,7 +114,11 @@ const copies = (machine) => JSON.parse(machine.regions()).some((region) => regio
 const HAPPENINGS = {
   pose: () => ends(/^host/, GP),
   transform: () => staged("transform"),
-  commands: () => ends(GP, /^renderer/),
+  /** Renderers draw some regions of the first eye, and execute commands for one of them. */
+  draw: () => (machine) => {
+    const drawn = JSON.parse(machine.regions()).filter((region) => region.stage === "render" && region.surface === 0);
+    return drawn.length >= 3 && drawn.some((region) => region.works);
+  },
   /** A region of the first eye is on its way. */
   copy: () => copies,
   swap(machine) {

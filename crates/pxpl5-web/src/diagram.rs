@@ -49,6 +49,7 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
 /// Returns the regions that renderers are drawing, then the regions that they are copying to displays.
 ///
 /// Each region has its stage (`render` or `copy`), its renderer, the index of its surface, and a rectangle in pixels.
+/// `works` is false for a region whose renderer waits, for more commands or for the copy command.
 /// `lines` is `[0, 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line and the
 /// distance of the lines of one field. `surface` is null for a region of a cube face.
 pub(crate) fn regions(stepper: &Stepper) -> Value {
@@ -60,22 +61,22 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
             place.map(|place| place % display.surfaces().len())
         })
     };
-    let region = |stage: &str, number: usize, place: RegionPlace| {
+    let region = |stage: &str, number: usize, works: bool, place: RegionPlace| {
         let lines = match place.lines {
             Lines::Frame => [0, 1],
             Lines::Field(FieldParity::Even) => [0, 2],
             Lines::Field(FieldParity::Odd) => [1, 2],
         };
         json!({
-            "stage": stage, "renderer": number, "surface": place.frame_buffer.and_then(surface_of),
+            "stage": stage, "renderer": number, "works": works, "surface": place.frame_buffer.and_then(surface_of),
             "rectangle": place.grid.rectangle(place.region), "lines": lines,
         })
     };
     let looks = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
-    let drawn = looks().filter_map(|(number, look)| Some(region("render", number, look.drawing?)));
+    let drawn = looks().filter_map(|(number, look)| Some(region("render", number, look.works(), look.drawing?)));
     let copied = looks().filter_map(|(number, look)| {
         let CopyTarget { frame_buffer, lines, grid, region: id, .. } = look.copying?.target;
-        Some(region("copy", number, RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region: id }))
+        Some(region("copy", number, true, RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region: id }))
     });
     drawn.chain(copied).collect()
 }

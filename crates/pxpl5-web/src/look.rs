@@ -91,13 +91,14 @@ pub(crate) fn boards(stepper: &Stepper) -> Value {
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     let name = board.to_string();
     match board {
-        // A renderer is busy while commands wait in its FIFO or a region is being copied.
+        // A renderer is busy while it executes commands, or while a region is being copied.
         Board::Renderer(number) => {
             let look = stepper.renderer(number);
             let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
             let copies = look.is_some_and(|look| look.copying.is_some());
-            let works = fifo > 0 || copies;
-            let stage = if copies { Some("copy") } else { (fifo > 0).then_some("render") };
+            let executes = look.is_some_and(|look| look.works());
+            let stage = if copies { Some("copy") } else { executes.then_some("render") };
+            let works = stage.is_some();
             let depth = look.map_or(0, |look| look.fifo_depth_words);
             json!({"name": name, "kind": "renderer", "does": says, "works": works, "stage": stage, "fifo": fifo, "depth": depth})
         }
