@@ -57,10 +57,16 @@ export function drawLimits(place, machines, names) {
     make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation))));
 }
 
+/** What "in time" means for a pipeline, as far as it has a deadline of its own. */
+function deadlineOf(name) {
+  if (name === "slats") return " (within one field, a sixtieth of a second)";
+  return name.startsWith("jitp") ? " (before the beam reaches its lines)" : "";
+}
+
 /** Says why a machine shows nothing, and what would fit: `found` is the answer of the worker, null before it has come. `use` is called
  *  with a number of triangles to build. */
 export function drawHeavy(place, name, found, use) {
-  const why = `${nameOf(name)} finishes no picture in time, so its screen stays empty or keeps an unfinished picture. `;
+  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen stays empty or keeps an unfinished picture. `;
   if (found === null) return place.replaceChildren(why, "Looking for the number of triangles that would fit ...");
   const { primitives, in_time: fits } = found;
   const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "triangle" : "triangles"}. `;
