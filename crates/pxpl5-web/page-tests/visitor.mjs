@@ -151,7 +151,7 @@ export default {
     assert.notEqual(await shownMs(), before, "the machine before stays");
   },
   async "where nothing is shown, the page says why and what would fit, and builds it"() {
-    for (const [hash, name, least, most] of [["pipeline=slats&scene=mig", "Slats", 130, 160], ["pipeline=jitp-scanline&scene=aircraft", "jitp-scanline", 10, 60]]) {
+    for (const [hash, name, least, most] of [["pipeline=slats&scene=mig", "Slats", 130, 160], ["pipeline=jitp-scanline&scene=aircraft", "Just-in-time pixels (jitp-scanline)", 10, 60]]) {
       await open(`#${hash}&fields=600&head.motion=sine:10:0.5&at=600000000000`);
       await until("a number", "document.querySelector('#heavy button')", 60000);
       console.log(`   ${await text("heavy")}`);

@@ -32,8 +32,15 @@ function canvasOf(width, height, label) {
   return canvas;
 }
 
-/** The name of a pipeline as the papers write it. */
-export const nameOf = (pipeline) => ({ slats: "Slats", "rendering-control": "Rendering Control" })[pipeline] ?? pipeline;
+/** Names of pipelines as the papers write them. */
+const NAMES = { slats: "Slats", "rendering-control": "Rendering Control", frameless: "Frameless rendering" };
+const FAMILIES = [["jitp-", "Just-in-time pixels"], ["arp-", "Address recalculation"]];
+
+/** The name of a pipeline for reading; variants of a family keep their key beside it. */
+export function nameOf(pipeline) {
+  const family = FAMILIES.find(([begin]) => pipeline.startsWith(begin));
+  return NAMES[pipeline] ?? (family ? `${family[1]} (${pipeline})` : pipeline);
+}
 
 /** A row of pictures for each machine; `record` is told of each canvas that a head can be dragged on. */
 export function layOutEyes(place, states, names, record) {
