@@ -66,7 +66,7 @@ function deadlineOf(name) {
 /** Says why a machine shows nothing, and what would fit: `found` is the answer of the worker, null before it has come. `use` is called
  *  with a number of triangles to build. */
 export function drawHeavy(place, name, found, use) {
-  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen stays empty or keeps an unfinished picture. `;
+  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen is empty, unfinished or too old. `;
   if (found === null) return place.replaceChildren(why, "Looking for the number of triangles that would fit ...");
   const { primitives, in_time: fits } = found;
   const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "triangle" : "triangles"}. `;
