@@ -405,7 +405,7 @@ function draw(seen) {
   at("wire-legend").hidden = !shows("wire");
   at("region-legend").hidden = !shows("regions");
   if (seen.machines[0].limits) drawLimits(at("limits"), seen.machines, names());
-  tellHeavy(states);
+  if (seen.machines[0].missesAll !== undefined) tellHeavy(seen.machines);
   if (mode === "lab") drawLink(state);
   if (!running) describe();
   if ((failed || state.over) && running) pause();
@@ -415,10 +415,10 @@ function draw(seen) {
 let heavy = null;
 
 /** Says why a machine shows nothing and what would fit. The number is searched for once. */
-async function tellHeavy(states) {
-  const number = states.findIndex((state) => state.misses_all && !state.failure);
-  at("heavy").hidden = number < 0 || mode !== "lab";
-  if (number < 0 || heavy || !source) return;
+async function tellHeavy(seen) {
+  const number = seen.findIndex(({ missesAll, state }) => missesAll && !state.failure);
+  at("heavy").hidden = number < 0;
+  if (number < 0 || mode !== "lab" || heavy || !source) return;
   const mine = { number, found: null };
   heavy = mine;
   const name = names()[number];

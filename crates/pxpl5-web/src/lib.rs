@@ -222,6 +222,12 @@ impl WebMachine {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
+    /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+    #[must_use]
+    pub fn misses_all(&self) -> bool {
+        look::misses_all(self.0.stepper())
+    }
+
     /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
     /// and what was not measured is null.
     #[must_use]

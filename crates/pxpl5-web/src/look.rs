@@ -30,7 +30,6 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "config_hash": stepper.experiment().config_hash().to_string(),
         "surfaces": surfaces.collect::<Vec<_>>(),
         "memories": pictures::memories(stepper),
-        "misses_all": misses_all(stepper),
     })
 }
 
@@ -48,7 +47,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
 }
 
 /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
-fn misses_all(stepper: &Stepper) -> bool {
+pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.so_far();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }

@@ -296,7 +296,7 @@ mod tests {
             let mut session = new(settings).expect("known");
             session.run_to(500_000_000_000);
             assert_eq!(session.state()["now_ps"], 500_000_000_000_u64);
-            (session.state()["misses_all"] == true, session.fitting())
+            (look::misses_all(session.stepper()), session.fitting())
         };
         let (misses, fitting) = misses_all("pipeline=slats\nscene=mig\nfields=60\npixels=off");
         assert!(misses);
