@@ -16,7 +16,7 @@ function fail(message) {
   asked = new Map();
 }
 
-/** Ends the worker. What it was asked fails. */
+/** Ends the worker. Requests without an answer fail. */
 export function endAside() {
   worker?.terminate();
   worker = null;

@@ -62,7 +62,7 @@ export class Checkpoints {
       let word = page * WORDS;
       while (word < end && now[word] === before[word]) word += 1;
       if (word === end) continue;
-      // The old page leads back from here; without an older checkpoint nobody needs it.
+      // The old page leads back to the checkpoint before, if there is one.
       if (page * PAGE < (last?.size ?? 0)) pages.set(page, this.newest.slice(page * PAGE, (page + 1) * PAGE));
       this.newest.set(bytes.subarray(page * PAGE, (page + 1) * PAGE), page * PAGE);
     }
