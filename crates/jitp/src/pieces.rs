@@ -7,7 +7,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
     CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyContent, CopyOrder, CopyPath, CopyTarget,
-    MAX_MESSAGE_WORDS, RegionId, Word,
+    MAX_MESSAGE_WORDS, RegionId, RegionPlace, Word,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -178,6 +178,11 @@ impl CommandWords for RegionWords {
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         self.parts.get(part as usize).is_some_and(Part::draws)
+    }
+
+    fn place(&self) -> Option<RegionPlace> {
+        let CopyTarget { frame_buffer, lines, grid, region, .. } = self.target;
+        Some(RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region })
     }
 }
 

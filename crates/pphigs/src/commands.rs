@@ -16,7 +16,7 @@ use pxpl5_renderer::{
 };
 use pxpl5_wire::{
     CommandContent, CommandList, CommandRun, CommandSink, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId,
-    Word,
+    RegionPlace, Word,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -244,6 +244,11 @@ impl CommandWords for RegionWords {
             self.append_with(&part, &triangles, out);
         }
         draws
+    }
+
+    fn place(&self) -> Option<RegionPlace> {
+        let viewport = &self.pass.picture().viewport;
+        Some(RegionPlace { frame_buffer: None, lines: viewport.lines(), grid: viewport.grid(), region: self.region })
     }
 }
 

@@ -93,7 +93,7 @@ mod tests {
     /// docs/sources.md lists the papers by their short names, written by hand.
     #[test]
     fn the_list_of_sources_has_each_cited_paper() {
-        let sources = include_str!("../../../../docs/sources.md").to_lowercase();
+        let sources = include_str!("../../../docs/sources.md").to_lowercase();
         for work in WORKS {
             let title = work.title.split(':').next().unwrap_or_default().to_lowercase();
             assert!(sources.contains(&title), "docs/sources.md lacks {}", work.title);

@@ -23,7 +23,7 @@ use crate::ports::Ports;
 use crate::record::Record;
 use crate::run_error::RunError;
 use crate::savings::Optimization;
-use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Priority};
+use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
@@ -183,6 +183,13 @@ impl Machine {
         &self.record
     }
 
+    /// Returns the use of the CPU time of the host and of each graphics processor up to `now`, in the order of their
+    /// ports. `now` must not be earlier than the last event.
+    #[must_use]
+    pub fn processors_used(&self, now: Time) -> Vec<GpUse> {
+        self.processors.iter().map(|board| board.used(now)).collect()
+    }
+
     /// Ends the run and returns the boards and all observations.
     #[must_use]
     pub fn into_record(mut self) -> Record {
@@ -190,7 +197,7 @@ impl Machine {
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
         self.record.elapsed = self.now;
-        self.record.processors_used = self.processors.iter().map(|board| board.used(self.now)).collect();
+        self.record.processors_used = self.processors_used(self.now);
         self.record
     }
 

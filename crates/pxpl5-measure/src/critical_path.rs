@@ -6,8 +6,8 @@
 
 use crate::resource::Resource;
 use crate::trail::{Step, Trail};
-use pxpl5_machine::Board;
-use pxpl5_run::{Outcome, PictureTimes};
+use pxpl5_machine::{Board, Record};
+use pxpl5_run::{Outcome, PictureTimes, SoFar};
 use pxpl5_sim::Span;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -56,9 +56,22 @@ impl CriticalPath {
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let all: Vec<&PictureTimes> = outcome.complete_pictures().collect();
+        Self::of_last(outcome.record(), &all)
+    }
+
+    /// Returns the chain of waits of the last complete pictures of a run so far. Returns `None` before the first
+    /// complete picture.
+    #[must_use]
+    pub fn so_far(run: &SoFar<'_>) -> Option<Self> {
+        let is_on_screen = |times: &&PictureTimes| times.is_shown() && times.shown_at <= run.end();
+        let all: Vec<&PictureTimes> = run.pictures().iter().filter(is_on_screen).collect();
+        Self::of_last(run.record(), &all)
+    }
+
+    fn of_last(record: &Record, all: &[&PictureTimes]) -> Option<Self> {
         let pictures = &all[all.len().saturating_sub(PICTURES_FOLLOWED)..];
         let earliest = pictures.iter().map(|times| times.transform_at).min()?;
-        let trail = Trail::of(outcome.record(), earliest);
+        let trail = Trail::of(record, earliest);
         let chains: Vec<Vec<Step>> = pictures.iter().map(|times| trail.follow(times)).collect();
         Self::of_chains(&chains)
     }

@@ -1,6 +1,8 @@
 //! Share of time for which each board was busy, over a whole run.
 
+use pxpl5_gp::GpUse;
 use pxpl5_machine::Record;
+use pxpl5_run::Stepper;
 use pxpl5_sim::{Span, Time};
 use serde::Serialize;
 use std::fmt;
@@ -108,8 +110,21 @@ impl Utilisation {
     /// Returns the shares of a finished run. Returns `None` for a machine that has not run.
     #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
-        let time = record.elapsed();
-        let (host, gps) = record.processors_used().split_first()?;
+        Self::until(record, record.elapsed(), record.processors_used())
+    }
+
+    /// Returns the shares of a run up to now. Returns `None` at time zero.
+    ///
+    /// A message on the ring counts when it ends.
+    #[must_use]
+    pub fn so_far(run: &Stepper) -> Option<Self> {
+        Self::until(run.record(), run.now(), &run.machine().processors_used(run.now()))
+    }
+
+    /// Returns the shares from the start of the machine to an instant. `used` is the CPU time of the host and of each
+    /// graphics processor up to this instant.
+    fn until(record: &Record, time: Time, used: &[GpUse]) -> Option<Self> {
+        let (host, gps) = used.split_first()?;
         let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);
         let renderers = record.renderers();
         // A renderer executes, copies or waits. The share of waiting is the remainder.

@@ -3,7 +3,9 @@
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{LatencyCurve, Measure, Measured, QUANTITIES, Results, TooHeavy, side_by_side};
+use pxpl5_measure::{
+    CriticalPath, LatencyCurve, Measure, Measured, QUANTITIES, Results, TooHeavy, Utilisation, side_by_side,
+};
 use pxpl5_run::{
     DuePictures, Estimates, Experiment, ExperimentError, FacePipeline, FacePolicy, FaceSource, Head, Outcome, Pipeline,
     PipelineSettings, Pixels, Registry, Slats,
@@ -32,6 +34,28 @@ fn run(pipeline: &str, scene: &str, fields: u64) -> Outcome {
 
 fn value(results: &Results, name: &str) -> Option<f64> {
     Measure::named(name).expect("a quantity").of(results)
+}
+
+/// A running machine has the same utilisation and critical path at its end as the report of the finished run.
+#[test]
+fn a_run_so_far_has_at_its_end_the_shares_of_the_report() {
+    for pipeline in ["rendering-control", "slats"] {
+        let registry = Registry::of_papers();
+        let pipeline = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
+        let scene = Arc::new(builtin("sphere:10").expect("built in"));
+        let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
+        let mut stepper = experiment.stepper().expect("it fits");
+        assert_eq!(Utilisation::so_far(&stepper), None, "no time has passed");
+        assert_eq!(CriticalPath::so_far(&stepper.so_far()), None, "no picture was shown");
+        stepper.run_to(stepper.end());
+        let utilisation = Utilisation::so_far(&stepper).expect("time has passed");
+        let path = CriticalPath::so_far(&stepper.so_far()).expect("pictures were shown");
+        let report = stepper.finish().expect("it runs").report();
+        assert_eq!(Some(utilisation), report.utilisation);
+        let of_report = report.critical_path.expect("pictures were shown");
+        assert_eq!(path.limited_by, of_report.limited_by);
+        assert!((path.parts.iter().map(|part| part.share).sum::<f64>() - 1.0).abs() < 1e-9);
+    }
 }
 
 #[test]

@@ -450,6 +450,8 @@ impl Renderer {
             fifo_depth_words: self.timing.fifo_words as u32,
             stands_at_copy: self.fifo.is_blocked(),
             copying: self.copying,
+            executing: self.fifo.is_executing(now),
+            drawing: passed.zip(self.sent.as_ref()).and_then(|(passed, sent)| sent.drawing(passed.started)),
             stored_regions: self.stored.len() + self.unstored.len(),
             busy: self.fifo.busy(),
         }

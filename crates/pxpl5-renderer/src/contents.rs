@@ -27,3 +27,10 @@ pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     }
     None
 }
+
+/// Returns the number of words before the first copy command of a list, or `None` if the list copies no region.
+pub(crate) fn words_before_copy(runs: &[CommandRun]) -> Option<u64> {
+    let is_copy = |run: &CommandRun| CommandKind::from_opcode(run.opcode) == Some(CommandKind::CopyRegion);
+    let before = runs.iter().take(runs.iter().position(is_copy)?);
+    Some(before.map(|run| u64::from(run.count) * u64::from(run.words_each)).sum())
+}

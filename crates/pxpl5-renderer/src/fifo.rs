@@ -300,6 +300,11 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
+    /// Returns true while a command runs that does not block, as far as the received commands tell.
+    pub(crate) fn is_executing(&self, now: Time) -> bool {
+        self.free_at.is_some_and(|free_at| free_at > now)
+    }
+
     /// Returns true while a blocking command runs.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()

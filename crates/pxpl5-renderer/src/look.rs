@@ -1,9 +1,9 @@
 //! Snapshots of a renderer during a run.
 
-use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
+use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear, words_before_copy};
 use crate::{Lanes, Layout, PixelArray};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandContent, CopyOrder, Message};
+use pxpl5_wire::{Body, CommandContent, CopyOrder, CopyPath, Message, RegionPlace};
 use std::collections::VecDeque;
 
 /// A snapshot of a renderer board.
@@ -17,11 +17,24 @@ pub struct RendererSnapshot {
     pub stands_at_copy: bool,
     /// The copy whose region is on its way to a frame buffer, if there is one.
     pub copying: Option<CopyOrder>,
+    /// True while the controller executes commands other than copies.
+    pub executing: bool,
+    /// Region for which the last started commands draw, until its copy command starts. `None` if the FIFO is not
+    /// watched, or if the sender of the commands does not state the region.
+    pub drawing: Option<RegionPlace>,
     /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,
     /// Time spent executing commands since the start of the run, without copies. A received command counts at once,
     /// even before it is executed.
     pub busy: Span,
+}
+
+impl RendererSnapshot {
+    /// Returns true while the controller executes commands other than copies, or has them in its FIFO.
+    #[must_use]
+    pub fn works(&self) -> bool {
+        self.executing || self.fifo_words.is_some_and(|words| words > 0)
+    }
 }
 
 /// Received command lists whose effects are visible in pixel memory now or later.
@@ -36,6 +49,9 @@ struct SentList {
     /// Index of the first word of the clear at the beginning of the list, counted since the start of the run. `None` if
     /// the list does not begin with a clear.
     clear: Option<u64>,
+    /// Index of the first word of the copy command that ends the region, counted since the start of the run. `None`
+    /// until this command is received.
+    copy: Option<u64>,
     content: CommandContent,
 }
 
@@ -43,11 +59,26 @@ impl SentLists {
     /// Adds the list of a received message. `started` is the number of words in commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
-        let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
-        let clear = words_before_clear(&list.runs).map(|words| first_word + words);
-        self.forget(started);
-        self.0.push_back(SentList { context, first_word, clear, content });
+        if let Some(content) = list.content.clone().filter(|_| changes_pixels(&list.runs)) {
+            let clear = words_before_clear(&list.runs).map(|words| first_word + words);
+            self.forget(started);
+            self.0.push_back(SentList { context, first_word, clear, copy: None, content });
+        }
+        // A copy from pixel memory ends the region of its context, in this list or in earlier ones.
+        let Some(before) = words_before_copy(&list.runs) else { return };
+        let from_pixels = list.copies.iter().filter(|order| order.way != CopyPath::FromBacking);
+        let copied: Vec<usize> = from_pixels.map(|order| usize::from(order.context) % MAX_CONTEXTS).collect();
+        let open = self.0.iter_mut().filter(|list| list.copy.is_none() && copied.contains(&list.context));
+        open.for_each(|list| list.copy = Some(first_word + before));
+    }
+
+    /// Returns the region for which the last started list draws. `started` is the number of words in commands that
+    /// have started. Returns `None` if the copy command of the region has started.
+    pub(crate) fn drawing(&self, started: u64) -> Option<RegionPlace> {
+        let last = self.0.iter().rfind(|list| list.first_word < started)?;
+        let is_copied = last.copy.is_some_and(|copy| copy < started);
+        if is_copied { None } else { last.content.place() }
     }
 
     /// Drops the lists whose pixels have been erased by a clear that has started.
@@ -82,5 +113,75 @@ impl SentLists {
             let _ = array.execute(&words);
         }
         Some(array)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::CommandKind;
+    use pxpl5_wire::{
+        CommandList, CommandRun, CommandWords, CopyContent, CopyTarget, Lines, NodeId, PictureNumber, RegionGrid,
+        RegionId, Word,
+    };
+    use std::sync::Arc;
+
+    #[derive(Debug)]
+    struct Placed(u16);
+
+    impl CommandWords for Placed {
+        fn append_words(&self, _: u32, _: &mut Vec<Word>) {}
+
+        fn place(&self) -> Option<RegionPlace> {
+            let region = RegionId(self.0);
+            Some(RegionPlace { frame_buffer: None, lines: Lines::Frame, grid: RegionGrid::FRAME, region })
+        }
+    }
+
+    const PORT: NodeId = NodeId(7);
+
+    fn message(kinds: &[CommandKind], region: u16, way: Option<CopyPath>) -> Message {
+        let runs = kinds.iter().map(|kind| CommandRun { opcode: kind.opcode(), words_each: kind.words(), count: 1 });
+        let target = CopyTarget {
+            frame_buffer: PORT,
+            buffer: 0,
+            lines: Lines::Frame,
+            grid: RegionGrid::FRAME,
+            region: RegionId(region),
+            picture: PictureNumber(0),
+        };
+        let order = |way| CopyOrder { target, context: 0, way, content: CopyContent::Colour, acknowledge: None };
+        let list = CommandList {
+            runs: runs.collect(),
+            context: 0,
+            copies: way.map(order).into_iter().collect(),
+            content: Some(CommandContent::new(Arc::new(Placed(region)), 0)),
+        };
+        let list = list.for_frame_buffer(PORT);
+        Message { source: NodeId(0), destination: NodeId(1), words: list.words(), body: Body::Commands(list) }
+    }
+
+    /// A renderer draws a region from the first started command until its copy command starts. The release of another
+    /// region from the backing store does not end the region.
+    #[test]
+    fn a_region_is_drawn_from_its_first_command_to_its_copy_command() {
+        let [select, clear, triangle, copy] =
+            [CommandKind::SelectRegion, CommandKind::Clear, CommandKind::Triangle, CommandKind::CopyRegion];
+        let mut sent = SentLists::default();
+        let drawn = message(&[select, clear, triangle], 3, None);
+        sent.add(&drawn, 0, 0);
+        assert_eq!(sent.drawing(0), None, "no command has started");
+        let place = sent.drawing(1).expect("the region is drawn");
+        assert_eq!((place.region, place.frame_buffer), (RegionId(3), Some(PORT)));
+        let end = u64::from(drawn.words);
+        let released = message(&[select, copy], 2, Some(CopyPath::FromBacking));
+        sent.add(&released, end, 1);
+        let later = end + u64::from(released.words);
+        assert_eq!(sent.drawing(later), Some(place));
+        let copied = message(&[select, copy], 3, Some(CopyPath::FromPixelMemory));
+        sent.add(&copied, later, later);
+        let copy_word = later + u64::from(select.words());
+        assert_eq!(sent.drawing(copy_word), Some(place));
+        assert_eq!(sent.drawing(copy_word + 1), None, "the copy command has started");
     }
 }

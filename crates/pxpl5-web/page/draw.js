@@ -32,8 +32,15 @@ function canvasOf(width, height, label) {
   return canvas;
 }
 
-/** The name of a pipeline as the papers write it. */
-export const nameOf = (pipeline) => ({ slats: "Slats", "rendering-control": "Rendering Control" })[pipeline] ?? pipeline;
+/** Names of pipelines as the papers write them. */
+const NAMES = { slats: "Slats", "rendering-control": "Rendering Control", frameless: "Frameless rendering" };
+const FAMILIES = [["jitp-", "Just-in-time pixels"], ["arp-", "Address recalculation"]];
+
+/** The name of a pipeline for reading; variants of a family keep their key beside it. */
+export function nameOf(pipeline) {
+  const family = FAMILIES.find(([begin]) => pipeline.startsWith(begin));
+  return NAMES[pipeline] ?? (family ? `${family[1]} (${pipeline})` : pipeline);
+}
 
 /** A row of pictures for each machine; `record` is told of each canvas that a head can be dragged on. */
 export function layOutEyes(place, states, names, record) {
@@ -65,7 +72,10 @@ export function layOutEyes(place, states, names, record) {
   return machines;
 }
 
-/** Draws over a picture: the wire frame of the world now, regions on their way, and the beam's line (null for none). */
+/** Colours of regions by stage, the same as in the block diagram. */
+const REGION_COLOURS = { render: "#7fd6a8", copy: "#ffd166" };
+
+/** Draws over a picture: the wire frame of the world now, regions that are drawn or copied, and the beam's line (null for none). */
 export function drawOver(over, { wire, regions, line }) {
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
@@ -77,11 +87,14 @@ export function drawOver(over, { wire, regions, line }) {
     for (let x = 0; x <= thick; x += 1) for (let y = 0; y <= thick; y += 1) context.drawImage(lines, x - thick / 2, y - thick / 2);
   }
   context.lineWidth = Math.max(3, over.width / 160);
-  for (const { rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
+  for (const { stage, works, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
     const box = [left, first + top * step, width, Math.max(2, height * step)];
-    context.fillStyle = "rgba(255, 209, 102, .28)";
+    // A region whose renderer waits has only a frame.
+    context.fillStyle = `${REGION_COLOURS[stage]}${works ? "59" : "00"}`;
     context.fillRect(...box);
-    context.strokeStyle = "#ffd166";
+    context.strokeStyle = REGION_COLOURS[stage];
+    // Dashes tell the stages apart without colours.
+    context.setLineDash(stage === "render" ? [over.width / 40, over.width / 80] : []);
     context.strokeRect(...box);
   }
   if (line !== null && line !== undefined) {

@@ -1,9 +1,11 @@
 // The page: stories, and the laboratory with settings from the form or the address; a run in pieces, and what there is to see of
 // it between them.
+import { buildAside, endAside } from "./aside.js";
 import { Live, Recorder, csv } from "./recording.js";
 import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
 import { Diagram } from "./diagram.js";
 import { explain } from "./hints.js";
+import { drawHeavy, drawLimits } from "./limits.js";
 import { save, wholePicture } from "./save.js";
 import { spinningScreen } from "./spin.js";
 import { FIRST_SCREEN, STORIES, inPs, storyOf } from "./stories.js";
@@ -20,11 +22,15 @@ const OTHERS = ["beside", "motion", "at", "story", "step"];
 const RECORDED = "recorded.csv";
 /** The same of a head that is moved while the machine runs. */
 const LIVE = "live.csv";
+/** Names of motions in the list, where the setting itself says too little. */
+const MOTION_NAMES = { "": "scene's own", [LIVE]: "live: you move it", "synthetic:1": "synthetic:1 (computed viewer)" };
 /** Most simulated time of one piece, picoseconds: four fields. */
 const LONGEST = 66.7e9;
 /** Milliseconds between two looks at boards and errors, and at timeline and latency. */
 const BOARDS_EVERY = 100;
 const TIMELINE_EVERY = 500;
+/** The same for the waits and the use of boards, which take longer to compute. */
+const LIMITS_EVERY = 2000;
 
 let settings = {};
 let beside = "";
@@ -39,7 +45,9 @@ let of = 0;
 let chosen = null;
 let pixel = null;
 let running = false;
-let looked = { boards: 0, timeline: 0 };
+let looked = { boards: 0, timeline: 0, limits: 0 };
+/** What the machines were built from: `runs` and `files`. */
+let source = null;
 /** What the page shows: `start`, `story` or `lab`. */
 let mode = "start";
 /** What is drawn besides the pictures: `wire`, `beam`, `regions`, `age`, `latency`, `faces`, `diagram`. */
@@ -144,6 +152,8 @@ function mark() {
   const names = [...KEYS, "beside"].filter((key) => (wanted[key] ?? "") !== (built[key] ?? ""));
   for (const key of [...KEYS, "beside"]) form.elements[key].closest("label").classList.toggle("changed", names.includes(key));
   at("build").classList.toggle("main", names.length > 0);
+  const chosen = ["scene", "pipeline", "head.motion"].map((key) => [form.elements[key].closest("label").textContent.trim().split(/\s/)[0], form.elements[key].selectedOptions[0]?.title]);
+  at("about").textContent = chosen.filter(([, about]) => about).map(([name, about]) => `${name}: ${about.replace(/\.$/, "")}.`).join(" ");
   at("changed").textContent = names.length > 0 ? "Changed: press Build, the pictures above are of the settings before." : "";
 }
 
@@ -200,8 +210,10 @@ async function build(kept = null) {
   say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which this page does not know: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
   unknown = [];
   document.body.dataset.busy = "true";
+  endAside();
   try {
     await ask("build", { runs: texts, files });
+    source = { runs: texts, files };
   } catch (error) {
     await refused(error);
     return false;
@@ -220,6 +232,9 @@ async function build(kept = null) {
   at("board-name").textContent = "Choose a board for its state";
   at("pixel").hidden = true;
   at("volume").hidden = true;
+  at("volume-says").textContent = "";
+  at("heavy").hidden = true;
+  heavy = null;
   machines = [];
   diagram.clear();
   await go({ to: 0 });
@@ -227,11 +242,23 @@ async function build(kept = null) {
   return true;
 }
 
-/** Goes back to an instant: the machines are built anew and run there, which gives the same run. */
+/** Goes back to an instant: from the last checkpoint before it, or from the start where none is left. Both give the same run. */
 async function rewind(to) {
-  await build(live);
-  live?.again(to);
-  if (to > 0) await go({ to });
+  pause();
+  await piece;
+  const found = await ask("back", { to });
+  if (found) {
+    live?.again(to, found.note);
+    reached = found.at;
+    messagesAfter = to;
+    seenLast = null;
+  } else {
+    await build(live);
+    live?.again(to);
+  }
+  // Tests see how much was run again.
+  document.documentElement.dataset.repeatedPs = to - reached;
+  await go({ to });
 }
 
 // Looks.
@@ -254,6 +281,10 @@ function wanted(now) {
     looked.timeline = now;
     if (inLab && at("timeline-part").open) want.timeline = Number(at("span").value);
     if (shows("latency")) want.latencies = inLab ? 8 : 1;
+  }
+  if (inLab && at("limits-part").open && (stands || now - looked.limits > LIMITS_EVERY)) {
+    looked.limits = now;
+    want.limits = true;
   }
   return want;
 }
@@ -284,7 +315,7 @@ function go(how) {
       // A long way is gone in parts, of which only the last one is looked at.
       while (how.to !== undefined && !how.stop && how.to - reached > WAY) {
         const to = reached + WAY;
-        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, want: null });
+        const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.told, want: null });
         const before = reached;
         reached = Math.max(...all.map(({ state }) => state.now_ps));
         at("failure").hidden = false;
@@ -292,7 +323,7 @@ function go(how) {
         if (reached === before) break;
       }
       const rows = live?.until(how.to ?? reached + (how.by ?? (how.step ? STEP : 0))) ?? null;
-      const seen = await ask("go", { ...how, rows, want: wanted(performance.now()) });
+      const seen = await ask("go", { ...how, rows, note: live?.told, want: wanted(performance.now()) });
       draw(seen);
       return seen;
     } catch (error) {
@@ -372,10 +403,38 @@ function draw(seen) {
   if (seen.faces) drawFaces(at("faces"), seen.faces, eyesShown);
   at("beam-legend").hidden = !shows("beam");
   at("wire-legend").hidden = !shows("wire");
-  at("region-legend").hidden = !shows("regions") || !seen.machines.some((one) => one.regions?.some((region) => region.surface < eyesShown));
+  at("region-legend").hidden = !shows("regions");
+  if (seen.machines[0].limits) drawLimits(at("limits"), seen.machines, names());
+  if (seen.machines[0].missesAll !== undefined) tellHeavy(seen.machines);
   if (mode === "lab") drawLink(state);
   if (!running) describe();
   if ((failed || state.over) && running) pause();
+}
+
+/** What is known of the machine that shows nothing: its number and the answer of the second worker; null without such a machine. */
+let heavy = null;
+
+/** Says why a machine shows nothing and what would fit. The number is searched for once. */
+async function tellHeavy(seen) {
+  const number = seen.findIndex(({ missesAll, state }) => missesAll && !state.failure);
+  at("heavy").hidden = number < 0;
+  if (number < 0 || mode !== "lab" || heavy || !source) return;
+  const mine = { number, found: null };
+  heavy = mine;
+  const name = names()[number];
+  const use = (triangles) => {
+    form.elements.triangles.value = triangles;
+    form.requestSubmit();
+  };
+  drawHeavy(at("heavy"), name, null, use);
+  try {
+    const askAside = await buildAside(source);
+    mine.found = await askAside("fitting", { of: number });
+    if (heavy === mine) drawHeavy(at("heavy"), name, mine.found, use);
+  } catch {
+    // Other machines were built, or the browser has no room for a second worker: the reason alone is told.
+    if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer triangles.`;
+  }
 }
 
 /** Says in words what the pictures show, for those who do not see them: when the run stands, not while it goes on. */
@@ -480,7 +539,7 @@ function pause() {
   running = false;
   at("go").textContent = "Run";
   at("go").setAttribute("aria-pressed", "false");
-  at("speed").textContent = "stands";
+  at("speed").textContent = "paused";
   runs += 1;
 }
 
@@ -541,8 +600,8 @@ async function back() {
   pause();
   await piece;
   const state = seenLast?.machines[0].state;
-  if (!state || state.now_ps === 0) return;
-  await rewind(Math.max(0, Math.round(state.now_ps - state.end_ps / state.fields)));
+  if (!state || state.back_ps === null) return;
+  await rewind(state.back_ps);
 }
 
 for (const button of document.querySelectorAll("[data-step]")) {
@@ -768,7 +827,13 @@ at("copy").addEventListener("click", async () => {
   }
 });
 
-spinningScreen({ ask, pause, refused });
+/** Draws the volume in a second worker, and returns a function that asks this worker. */
+async function volumeWorker() {
+  // What would fit is searched for again when the machine is looked at next.
+  if (heavy && !heavy.found) heavy = null;
+  return buildAside({ ...source, runs: source.runs.slice(0, 1) });
+}
+spinningScreen({ volumeWorker, refused });
 
 // Stories.
 
@@ -949,7 +1014,7 @@ try {
   choices("beside", [none, ...catalog.pipelines]);
   choices("scene", catalog.scenes);
   choices("display", catalog.displays.map((name) => ({ name })));
-  choices("head.motion", catalog.motions.map((one) => ({ ...one, label: one.name === LIVE ? "live: you move it" : one.name || "scene's own" })));
+  choices("head.motion", catalog.motions.map((one) => ({ ...one, label: MOTION_NAMES[one.name] ?? one.name })));
   choices("head.tracker", [{ name: "", label: "usual" }, ...catalog.trackers.map((name) => ({ name }))]);
   choices("head.predict", [{ name: "", label: "usual" }, ...catalog.predictors.map((name) => ({ name }))]);
   choices("level", [{ name: "", label: "transaction" }, { name: "cycle", about: glossary["cycle level"] }]);

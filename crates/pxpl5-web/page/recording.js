@@ -142,11 +142,11 @@ export class Live {
     return rows(this.samples.slice(first, last + 1), first);
   }
 
-  /** Machines begin again: they have no samples but the first, and are told the same ones up to an instant. */
-  again(ps) {
-    this.samples.length = Math.min(this.samples.length, Math.ceil((ps * RATE) / 1e12) + 2);
+  /** Machines go back to an instant, where they have the first `told` samples. The same samples follow up to this instant. */
+  again(ps, told = 1) {
+    this.samples.length = Math.min(this.samples.length, Math.max(told, Math.ceil((ps * RATE) / 1e12) + 2));
     this.now = this.samples.at(-1);
-    this.told = 1;
+    this.told = told;
   }
 
   /** As it stands in the address; null where it has become too long for it. */

@@ -3,12 +3,13 @@ import { picture } from "./draw.js";
 
 const at = (id) => document.getElementById(id);
 
-/** Connects the part of the page to the worker: `ask` asks it, `pause` pauses the run, `refused` tells an error. */
-export function spinningScreen({ ask, pause, refused }) {
+/** Connects the part of the page: `volumeWorker` begins the worker that draws the slices, `refused` tells an error. */
+export function spinningScreen({ volumeWorker, refused }) {
+  let ask = null;
   at("volume-draw").addEventListener("click", async () => {
-    pause();
     at("volume-says").textContent = "Drawing ...";
     try {
+      ask = await volumeWorker();
       const begun = performance.now();
       const [slices, width, height] = await ask("volume");
       at("volume-says").textContent = `${slices} slices drawn in ${((performance.now() - begun) / 1000).toFixed(1)} s`;

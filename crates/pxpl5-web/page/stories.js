@@ -39,15 +39,15 @@ export const STORIES = {
       },
       {
         title: "Where the time goes",
-        say: "Rendering Control, the first of the two, draws one eye after the other and hands a picture from stage to stage. Each stage takes its own time, and a finished picture still waits until the screen begins a new field.",
+        say: "Rendering Control, the first of the two, draws one eye after the other and hands a picture from stage to stage. Each stage takes its own time, and a finished picture still waits for the screen, which begins anew 60 times a second (a field).",
         ms: 120, slower: 6, show: ["wire", "age", "latency"],
         paused: "Each coloured piece of a bar is one stage, or one wait.",
       },
       {
         title: "What Slats does about it",
-        say: "Slats keeps every part of the screen in the renderers at the same time, so that a triangle is drawn as soon as it has been placed. All stages fit between two fields, and the picture is a fraction as old; the price is that only about 140 triangles fit.",
+        say: "Slats keeps the whole screen in the drawing boards (renderers) at once, so that each triangle is drawn as soon as its place is known. All stages then fit into one field, a sixtieth of a second; the price is that only about 140 triangles fit.",
         ms: 320, slower: 6, show: ["wire", "age", "latency"],
-        paused: "The same turn, a smaller gap. That is what the project was for.",
+        paused: "The same turn, a smaller gap: the picture of Slats is younger.",
       },
       {
         title: "Now you",
@@ -83,13 +83,13 @@ export const STORIES = {
       },
       {
         title: "3. RENDER",
-        say: "A renderer has a tiny processor for each of its 16,384 pixels, and all obey one command at once. The GPs send it the bin of a region, and after the last triangle the region is finished.",
-        until: "commands", ms: 200, slower: 100, then: 0.4, thenSlower: 4000, show: ["diagram", "regions", "age"],
+        say: "A renderer has a tiny processor for each of its 16,384 pixels, and all of them obey one command at once. A dashed green frame in the picture marks a region whose triangles are being drawn now.",
+        until: "draw", ms: 200, slower: 100, show: ["diagram", "regions", "age"],
         paused: "Drawing commands travel from GPs to renderers.",
       },
       {
         title: "4. COPY",
-        say: "Finished pixels go over the ring into the memory of the picture, one region at a time. The frame in the picture marks the region that is travelling now.",
+        say: "Finished pixels go over the ring into the memory of the picture, one region at a time. A yellow frame marks the region that travels now, while renderers already draw others.",
         until: "copy", ms: 200, slower: 100, then: 1.5, thenSlower: 800, show: ["diagram", "regions", "age"],
         paused: "The picture on the screen is still an older one.",
       },
@@ -123,7 +123,7 @@ export const STORIES = {
         title: "Just in time",
         say: "Here each line is drawn for the pose that the head will have when the beam is there. The pixels of a line arrive in the memory just before they light.",
         until: "strip", value: 200, ms: 60, slower: 120, show: ["beam", "regions", "diagram"],
-        paused: "The frame marks the strip on its way: it is ahead of the beam.",
+        paused: "The yellow frame marks the strip on its way: it is ahead of the beam.",
       },
       {
         title: "The race",
@@ -133,7 +133,7 @@ export const STORIES = {
       },
       {
         title: "What is left of the lag",
-        say: "The head swings, and the gap to the wire frame of the real world is a fraction of the one that Rendering Control leaves. Part of what remains is the delay of the tracker and its cable, which no way of drawing takes back.",
+        say: "The head swings, and the gap to the wire frame of the real world is a fraction of the one that Rendering Control leaves. Part of what remains is the delay of the tracker and its cable, which no way of drawing can remove.",
         ms: 900, slower: 4, show: ["beam", "wire", "age"],
         paused: "In the laboratory, choose rendering-control as the one beside it, press Build, and compare.",
       },
@@ -165,7 +165,7 @@ export const STORIES = {
       },
       {
         title: "What is not free",
-        say: "Only turning is free. Where the head moves to another place, or things in the world move, the faces must be drawn again, and that takes as long as ever.",
+        say: "Only turning is free. When the head moves to another place, or when things in the world move, the faces must be drawn again, as slowly as before.",
         ms: 300, slower: 4, show: ["faces", "wire", "diagram"],
         paused: "The boards draw new faces all the time; the display does not wait for them.",
       },

@@ -1,4 +1,5 @@
 // The machines, apart from the page, so that it stays awake: one request after the other, each answered by what there is to see.
+import { Checkpoints } from "./checkpoints.js";
 import init, { Files, WebMachine, catalog, glossary } from "./pxpl5_web.js";
 
 /** Milliseconds that a piece of a run may take before the page is told. */
@@ -7,11 +8,21 @@ const PATIENCE = 40;
 let wasm = null;
 let machines = [];
 let volume = null;
+let checkpoints = null;
+
+/** Milliseconds of computing since the last checkpoint. */
+let worked = 0;
+
+/** Takes a checkpoint if one is due; `note` comes back with it. */
+function checkpoint(note) {
+  if (checkpoints.take(Math.max(...machines.map((machine) => machine.now())), note, worked)) worked = 0;
+}
 
 const OPERATIONS = {
   async open() {
     if (typeof WebAssembly !== "object") throw new Error("this browser has no WebAssembly");
     wasm = await init({ module_or_path: await load(new URL("pxpl5_web_bg.wasm", import.meta.url)) });
+    checkpoints = new Checkpoints(wasm.memory);
     return { catalog: JSON.parse(catalog()), glossary: JSON.parse(glossary()) };
   },
   /** Builds a machine for each of some settings; where one of them is refused, the machines before stay. */
@@ -31,11 +42,20 @@ const OPERATIONS = {
     machines = built;
     volume?.free();
     volume = null;
+    checkpoints.clear();
     return null;
   },
-  /** Goes on to an instant, as far as it comes in time, or by a step, and looks. With `stop` it ends where that happens. */
-  go({ by, to, step, stop, rows, want }) {
+  /** Puts the machines back to the last checkpoint at or before an instant. Returns its instant and note, or null without one. */
+  back({ to }) {
+    watched = { key: null, happened: null };
+    worked = 0;
+    return checkpoints.back(to);
+  },
+  /** Goes on to an instant, as far as it comes in time, or by a step, and looks. With `stop` it ends where that happens. `note` is kept
+   *  with a checkpoint on the way. */
+  go({ by, to, step, stop, rows, want, note }) {
     if (rows) machines.forEach((machine) => machine.moved(rows));
+    checkpoint(note);
     if (stop) {
       const end = to ?? machines[0].now() + by;
       const stopped = seek(stop, end);
@@ -47,10 +67,15 @@ const OPERATIONS = {
     const from = machines.map((machine) => machine.now());
     const patience = to === undefined ? PATIENCE : Infinity;
     for (let part = 1; part <= 8 && performance.now() - begun < patience; part += 1) {
+      const before = performance.now();
       machines.forEach((machine, n) => machine.run_to(Math.round(from[n] + ((goal - from[n]) * part) / 8)));
+      worked += performance.now() - before;
+      checkpoint(note);
     }
     return look(want);
   },
+  /** Primitives of a machine's scene, and how many of them would be shown in time. */
+  fitting: ({ of }) => JSON.parse(machines[of].fitting()),
   volume() {
     volume?.free();
     volume = machines[0].volume();
@@ -83,13 +108,17 @@ const ends = (from, to) => (machine) => JSON.parse(machine.channels()).some((mes
 const staged = (stage) => (machine) => JSON.parse(machine.boards()).some((board) => board.kind === "processor" && board.name !== "host" && board.stage === stage && board.works);
 const GP = /^GP/;
 
-const copies = (machine) => JSON.parse(machine.regions()).some((region) => region.surface === 0);
+const copies = (machine) => JSON.parse(machine.regions()).some((region) => region.stage === "copy" && region.surface === 0);
 
 /** What a story can wait for: given what was before, a function that says whether it has happened. */
 const HAPPENINGS = {
   pose: () => ends(/^host/, GP),
   transform: () => staged("transform"),
-  commands: () => ends(GP, /^renderer/),
+  /** Renderers draw some regions of the first eye, and execute commands for one of them. */
+  draw: () => (machine) => {
+    const drawn = JSON.parse(machine.regions()).filter((region) => region.stage === "render" && region.surface === 0);
+    return drawn.length >= 3 && drawn.some((region) => region.works);
+  },
   /** A region of the first eye is on its way. */
   copy: () => copies,
   swap(machine) {
@@ -142,7 +171,7 @@ function look(want) {
       heat: want.error ? machine.heat(surface) : null,
       difference: want.error ? JSON.parse(machine.difference(surface)) : null,
     }));
-    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null };
+    return { state, surfaces, age: want.age ? JSON.parse(machine.age()) : undefined, missesAll: want.age ? machine.misses_all() : undefined, regions: want.regions ? JSON.parse(machine.regions()) : null, latencies: want.latencies ? JSON.parse(machine.latencies(want.latencies)) : null, limits: want.limits ? JSON.parse(machine.limits()) : null };
   });
   const machine = machines[want.of ?? 0] ?? machines[0];
   const boards = want.boards ? JSON.parse(machine.boards()) : null;

@@ -9,7 +9,7 @@ const MOTIONS: [(&str, &str); 6] = [
     ("still", "a head that stands still"),
     ("pan:100", "a turn at 100 degrees a second"),
     ("sine:20:0.5", "to and fro by 20 degrees at half a hertz"),
-    ("synthetic:1", "a viewer who looks around"),
+    ("synthetic:1", "computed, not recorded: a viewer who looks around as fast as recorded users of headsets do"),
     ("live.csv", "your own: drag across a picture while the machine runs"),
 ];
 

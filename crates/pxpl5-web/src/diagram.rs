@@ -5,7 +5,7 @@ use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::Board;
 use pxpl5_run::{PictureTimes, Stepper};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, Lines};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionPlace};
 use serde_json::{Value, json};
 
 /// Returns the name of the stage that a board's processor executes now, in the papers' words and in lower case. Returns
@@ -46,34 +46,39 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     some.map(|(begin, from, to, words)| json!({"begin_ps": begin.0, "from": from, "to": to, "words": words})).collect()
 }
 
-/// Returns the regions that renderers are copying to displays. Each has the renderer, the display and a rectangle in
-/// pixels. `lines` is `[0, 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line and
-/// the distance of the lines of one field.
+/// Returns the regions that renderers are drawing, then the regions that they are copying to displays.
+///
+/// Each region has its stage (`render` or `copy`), its renderer, the index of its surface, and a rectangle in pixels.
+/// `works` is false for a region whose renderer waits, for more commands or for the copy command.
+/// `lines` is `[0, 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line and the
+/// distance of the lines of one field. `surface` is null for a region of a cube face.
 pub(crate) fn regions(stepper: &Stepper) -> Value {
     let record = stepper.record();
-    let copying = (0..record.renderers().len()).filter_map(|number| {
-        let target = stepper.renderer(number)?.copying?.target;
-        let [left, top, width, height] = target.grid.rectangle(target.region);
-        let lines = match target.lines {
+    // The surfaces of a display are its frame buffers, in the order of their ports.
+    let surface_of = |port: NodeId| {
+        record.displays().iter().find_map(|display| {
+            let place = display.nodes().iter().position(|node| *node == port);
+            place.map(|place| place % display.surfaces().len())
+        })
+    };
+    let region = |stage: &str, number: usize, works: bool, place: RegionPlace| {
+        let lines = match place.lines {
             Lines::Frame => [0, 1],
             Lines::Field(FieldParity::Even) => [0, 2],
             Lines::Field(FieldParity::Odd) => [1, 2],
         };
-        let to = record.ports().board(target.frame_buffer).to_string();
-        // The surfaces of a display are its frame buffers, in the order of their ports.
-        let surface = record.displays().iter().find_map(|display| {
-            display
-                .nodes()
-                .iter()
-                .position(|node| *node == target.frame_buffer)
-                .map(|port| port % display.surfaces().len())
-        });
-        Some(json!({
-            "renderer": number, "to": to, "surface": surface, "picture": target.picture.0,
-            "rectangle": [left, top, width, height], "lines": lines,
-        }))
+        json!({
+            "stage": stage, "renderer": number, "works": works, "surface": place.frame_buffer.and_then(surface_of),
+            "rectangle": place.grid.rectangle(place.region), "lines": lines,
+        })
+    };
+    let looks = || (0..record.renderers().len()).filter_map(|number| Some((number, stepper.renderer(number)?)));
+    let drawn = looks().filter_map(|(number, look)| Some(region("render", number, look.works(), look.drawing?)));
+    let copied = looks().filter_map(|(number, look)| {
+        let CopyTarget { frame_buffer, lines, grid, region: id, .. } = look.copying?.target;
+        Some(region("copy", number, true, RegionPlace { frame_buffer: Some(frame_buffer), lines, grid, region: id }))
     });
-    copying.collect()
+    drawn.chain(copied).collect()
 }
 
 /// Returns the age of the shown picture in milliseconds: the time since its head pose was sampled. The result is `null`
@@ -102,6 +107,7 @@ mod tests {
     use super::*;
     use crate::files::Files;
     use crate::session::Session;
+    use std::collections::BTreeSet;
 
     fn session(pipeline: &str) -> Session {
         let settings = format!("pipeline={pipeline}\nscene=aircraft\nfields=60\n");
@@ -113,7 +119,7 @@ mod tests {
     #[test]
     fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
         let mut session = session("rendering-control");
-        let mut first = [None; 3];
+        let mut first = [None; 4];
         for step in 1..20_000_u64 {
             session.run_to(step * 20_000_000);
             let stepper = session.stepper();
@@ -123,15 +129,46 @@ mod tests {
                     .channels()
                     .iter()
                     .any(|on| matches!(stepper.record().ports().board(on.destination), Board::Renderer(_))),
-                regions(stepper).as_array().is_some_and(|all| !all.is_empty()),
+                in_stage(stepper, "render") > 0,
+                in_stage(stepper, "copy") > 0,
             ];
             first.iter_mut().zip(seen).filter(|(at, seen)| at.is_none() && *seen).for_each(|(at, _)| *at = Some(step));
             if first.iter().all(Option::is_some) {
                 break;
             }
         }
-        let [transform, commands, regions] = first.map(|at| at.expect("it happens"));
-        assert!(transform < commands && commands < regions, "{first:?}");
+        let [transform, commands, drawn, copied] = first.map(|at| at.expect("it happens"));
+        assert!(transform < commands && commands <= drawn && drawn < copied, "{first:?}");
+    }
+
+    /// Returns the number of regions in a stage.
+    fn in_stage(stepper: &Stepper, stage: &str) -> usize {
+        let all = regions(stepper);
+        all.as_array().expect("a list").iter().filter(|region| region["stage"] == stage).count()
+    }
+
+    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region has
+    /// 20 triangles of 258 clocks, so drawing takes 129 us, and a look each 20 us finds the region.
+    #[test]
+    fn a_region_is_copied_by_the_renderer_that_drew_it_and_where_it_was_drawn() {
+        let settings = "pipeline=rendering-control\nscene=full-screen:20\nfields=60\n";
+        let mut session = Session::new(settings, &Files::default()).expect("known settings");
+        let [mut drawn, mut copied] = [BTreeSet::new(), BTreeSet::new()];
+        for step in 1..10_000_u64 {
+            session.run_to(step * 20_000_000);
+            for region in regions(session.stepper()).as_array().expect("a list") {
+                assert!(region["surface"].as_u64().is_some_and(|surface| surface < 2), "{region}");
+                let place = ["renderer", "surface", "rectangle", "lines"].map(|key| region[key].to_string());
+                if region["stage"] == "render" {
+                    drawn.insert(place);
+                } else {
+                    assert!(drawn.contains(&place), "{region}");
+                    copied.insert(place);
+                }
+            }
+        }
+        // A stereo pair of frames has 2 x 20 regions.
+        assert!(copied.len() >= 40, "{}", copied.len());
     }
 
     #[test]

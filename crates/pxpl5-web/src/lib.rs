@@ -222,6 +222,26 @@ impl WebMachine {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
+    /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+    #[must_use]
+    pub fn misses_all(&self) -> bool {
+        look::misses_all(self.0.stepper())
+    }
+
+    /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
+    /// and what was not measured is null.
+    #[must_use]
+    pub fn limits(&self) -> String {
+        look::limits(self.0.stepper()).to_string()
+    }
+
+    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in time
+    /// as JSON. The second number is null if the scene cannot be decimated. It can take some seconds.
+    #[must_use]
+    pub fn fitting(&self) -> String {
+        self.0.fitting().to_string()
+    }
+
     /// Draws the scene of this experiment for a spinning volumetric display.
     ///
     /// # Errors

@@ -4,7 +4,9 @@ use crate::code;
 use crate::diagram;
 use crate::pictures;
 use pxpl5_machine::Board;
-use pxpl5_run::{LATENCY_PARTS, Stepper};
+use pxpl5_measure::{CriticalPath, Utilisation};
+use pxpl5_run::{LATENCY_PARTS, PictureTimes, Stepper, WARM_UP_PICTURES};
+use pxpl5_sim::Time;
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
@@ -17,6 +19,7 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     json!({
         "now_ps": stepper.now().0,
         "end_ps": stepper.end().0,
+        "back_ps": back(stepper).map(|at| at.0),
         "field": stepper.period().0,
         "fields": stepper.experiment().length(),
         "line": stepper.beam_line(),
@@ -28,6 +31,42 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "surfaces": surfaces.collect::<Vec<_>>(),
         "memories": pictures::memories(stepper),
     })
+}
+
+/// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
+/// step leads to the begin of the period before. From within a period, it leads to the same place of the period before,
+/// or to time zero.
+fn back(stepper: &Stepper) -> Option<Time> {
+    let (now, period) = (stepper.now(), stepper.period());
+    let tick = |period| stepper.record().tick(period);
+    if now == Time::ZERO {
+        return None;
+    }
+    let Some(before) = period.before(1) else { return Some(Time::ZERO) };
+    Some(tick(before) + now.since(tick(period)))
+}
+
+/// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+pub(crate) fn misses_all(stepper: &Stepper) -> bool {
+    let run = stepper.so_far();
+    run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
+}
+
+/// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1.
+/// `utilisation` is null at time zero, and `path` is null before the first complete picture.
+pub(crate) fn limits(stepper: &Stepper) -> Value {
+    let path = CriticalPath::so_far(&stepper.so_far());
+    let path = path.map(|path| {
+        let parts = path.parts.iter();
+        let parts: Vec<Value> = parts
+            .map(|part| json!({"what": part.resource.about(), "share": part.share, "ms": part.ms, "board": part.board}))
+            .collect();
+        json!({
+            "pictures": path.pictures, "latency_ms": path.latency_ms, "limited_by": path.limited_by, "parts": parts,
+            "chain": path.chain,
+        })
+    });
+    json!({"utilisation": Utilisation::so_far(stepper), "path": path})
 }
 
 /// Returns the message on each channel of the ring as JSON, with null for a free channel.
@@ -51,13 +90,14 @@ pub(crate) fn boards(stepper: &Stepper) -> Value {
 fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
     let name = board.to_string();
     match board {
-        // A renderer is busy while commands wait in its FIFO or a region is being copied.
+        // A renderer is busy while it executes commands, or while a region is being copied.
         Board::Renderer(number) => {
             let look = stepper.renderer(number);
             let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
             let copies = look.is_some_and(|look| look.copying.is_some());
-            let works = fifo > 0 || copies;
-            let stage = if copies { Some("copy") } else { (fifo > 0).then_some("render") };
+            let executes = look.is_some_and(|look| look.works());
+            let stage = if copies { Some("copy") } else { executes.then_some("render") };
+            let works = stage.is_some();
             let depth = look.map_or(0, |look| look.fifo_depth_words);
             json!({"name": name, "kind": "renderer", "does": says, "works": works, "stage": stage, "fifo": fifo, "depth": depth})
         }

@@ -4,12 +4,13 @@ use crate::files::Files;
 use crate::look;
 use crate::pictures::{self, Difference, rgba};
 use crate::volume::Volume;
-use pxpl5_lab::ExperimentFile;
+use pxpl5_lab::limit::{LimitQuery, Model, about};
+use pxpl5_lab::{ExperimentFile, Plan, SceneChoice};
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, SurfaceId};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::sync::Arc;
 use tracking::motion::{GrowingRecording, Recording};
 
@@ -22,6 +23,7 @@ pub(crate) struct Session {
     stepper: Stepper,
     /// True if all fields of the experiment have been simulated.
     is_over: bool,
+    plan: Plan,
     /// Motion of the head that the visitor moves, or `None` if the experiment has another motion.
     moves: Option<GrowingRecording>,
 }
@@ -49,7 +51,7 @@ impl Session {
             None => (experiment, None),
         };
         let stepper = experiment.stepper().map_err(|error| error.to_string())?;
-        Ok(Self { stepper, is_over: false, moves })
+        Ok(Self { stepper, is_over: false, plan, moves })
     }
 
     /// Adds poses to the motion of the head that the visitor moves. The last row of `rows` must not be earlier than the
@@ -117,6 +119,26 @@ impl Session {
     pub(crate) fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         let faces = Eye::BOTH.get(eye).and_then(|eye| pictures::faces(&self.stepper, *eye, memory));
         faces.unwrap_or_default()
+    }
+
+    /// Returns the number of primitives in the scene, and about the number that the pipeline shows in time, as JSON.
+    ///
+    /// The second number comes from the closed form of the pipeline. For a pipeline without a closed form, runs of
+    /// decimated scenes find the number by bisection. It is null if the scene cannot be decimated.
+    pub(crate) fn fitting(&self) -> Value {
+        let experiment = self.stepper.experiment();
+        let scene = experiment.scene();
+        let primitives = (scene.triangles().len() + scene.spheres().len()) as u64;
+        let in_time = experiment.triangles_in_time().or_else(|| self.fitting_by_runs());
+        json!({"primitives": primitives, "in_time": in_time.filter(|in_time| *in_time < primitives)})
+    }
+
+    fn fitting_by_runs(&self) -> Option<u64> {
+        let whole = Arc::clone(self.stepper.experiment().scene());
+        let triangles = u32::try_from(whole.triangles().len()).ok().filter(|triangles| *triangles > 0)?;
+        let choice = SceneChoice { triangles: None, ..self.plan.scene.clone() };
+        let query = LimitQuery { model: Some(Model { choice, whole }), ..LimitQuery::of_plan(&self.plan) };
+        about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 
     /// Draws the scene of the experiment for the spinning volumetric display.
@@ -264,6 +286,30 @@ mod tests {
         }
         assert!(session.board("gp 99").is_err() && session.board("cpu").is_err());
         assert!(session.step("pixel").is_err());
+    }
+
+    /// TR94 gives the limit of Slats: about 140 triangles of any size. The Mig has ten times as many. For just-in-time
+    /// pixels, a reduced scene runs in time, and twice as many triangles do not.
+    #[test]
+    fn a_scene_that_is_too_heavy_is_reported_with_what_would_fit() {
+        let misses_all = |settings: &str| {
+            let mut session = new(settings).expect("known");
+            session.run_to(500_000_000_000);
+            assert_eq!(session.state()["now_ps"], 500_000_000_000_u64);
+            (look::misses_all(session.stepper()), session.fitting())
+        };
+        let (misses, fitting) = misses_all("pipeline=slats\nscene=mig\nfields=60\npixels=off");
+        assert!(misses);
+        let in_time = fitting["in_time"].as_u64().expect("a closed form");
+        assert!((130..=160).contains(&in_time), "{fitting}");
+        let (misses, fitting) = misses_all("pipeline=jitp-scanline\nscene=aircraft\nfields=60\npixels=off");
+        assert!(misses);
+        let in_time = fitting["in_time"].as_u64().expect("found by runs");
+        let with = |n: u64| {
+            misses_all(&format!("pipeline=jitp-scanline\nscene=aircraft\ntriangles={n}\nfields=60\npixels=off"))
+        };
+        assert!(!with(in_time).0 && with(2 * in_time).0, "{fitting}");
+        assert!(!misses_all("pipeline=slats\nscene=full-screen:2\nfields=60\npixels=off").0);
     }
 
     #[test]

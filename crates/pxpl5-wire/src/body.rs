@@ -49,6 +49,7 @@ pub struct CommandList {
 pub struct CommandContent {
     words: Arc<dyn CommandWords>,
     part: u32,
+    frame_buffer: Option<NodeId>,
 }
 
 impl CommandContent {
@@ -56,7 +57,21 @@ impl CommandContent {
     /// `words`.
     #[must_use]
     pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
-        Self { words, part }
+        Self { words, part, frame_buffer: None }
+    }
+
+    /// Returns the same content, marked as commands for the picture of a frame buffer. The mark serves observers only.
+    #[must_use]
+    pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
+        Self { frame_buffer: Some(frame_buffer), ..self }
+    }
+
+    /// Returns the region for which the message draws. Returns `None` if the source of the words does not state the
+    /// region.
+    #[must_use]
+    pub fn place(&self) -> Option<RegionPlace> {
+        let place = self.words.place()?;
+        Some(RegionPlace { frame_buffer: place.frame_buffer.or(self.frame_buffer), ..place })
     }
 
     /// Appends the words of all commands of the message to `out`. Every call appends the same words.
@@ -69,6 +84,20 @@ impl CommandContent {
     pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_visible(self.part, out)
     }
+}
+
+/// The region of a picture for which renderer commands draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RegionPlace {
+    /// Ring port of the frame buffer that will receive the region. `None` if the commands do not depend on the frame
+    /// buffer and no program has stated it.
+    pub frame_buffer: Option<NodeId>,
+    /// Lines of the frame that the rows of the picture fill.
+    pub lines: Lines,
+    /// Division of the picture into regions.
+    pub grid: RegionGrid,
+    /// Number of the region within the grid.
+    pub region: RegionId,
 }
 
 /// The parameters of a copy command.
@@ -151,6 +180,13 @@ impl CommandList {
     pub fn words(&self) -> u32 {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
+
+    /// Returns the same list, marked as commands for the picture of a frame buffer
+    /// ([`CommandContent::for_frame_buffer`]).
+    #[must_use]
+    pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
+        Self { content: self.content.map(|content| content.for_frame_buffer(frame_buffer)), ..self }
+    }
 }
 
 /// A sequence of `count` successive commands of the same kind.
@@ -175,6 +211,11 @@ pub trait CommandWords: Debug + Send + Sync {
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
+    }
+
+    /// Returns the region for which all messages draw. The default is `None`: the source does not know the region.
+    fn place(&self) -> Option<RegionPlace> {
+        None
     }
 }
 

@@ -28,7 +28,7 @@ mod region;
 pub use body::{
     Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CommandSink,
     CommandWords, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, Message, PixelSource, RegionPixels,
-    SWAP_REQUEST, read_swap_request, swap_request,
+    RegionPlace, SWAP_REQUEST, read_swap_request, swap_request,
 };
 pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};

@@ -209,7 +209,10 @@ async fn walk(
     let envelope = envelope(config, token);
     let handing = pass.as_ref().map(|pass| BinHandoffWork { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
-    let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
+    // Observers of the renderer see for which eye it draws.
+    let frame_buffer = config.target(token.drawing, token.region).frame_buffer;
+    let lists = lists.into_iter().map(|list| list.for_frame_buffer(frame_buffer));
+    let messages = lists.map(|list| (renderer, list.words(), Body::Commands(list)));
     // Pay for the token, hand over the bin, and pass the token on in the background.
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token.drawing)

@@ -379,7 +379,8 @@ impl SlatsProcessor {
         let envelope = RegionEnvelope { begin, ..RegionEnvelope::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {
             let lists = region_messages(&passes[bound.eye.index()], bound.region, bound.context, envelope);
-            lists.into_iter().map(|list| self.addressed(bound.renderer, list))
+            let frame_buffer = self.config.frame_buffers[bound.eye.index()];
+            lists.into_iter().map(move |list| self.addressed(bound.renderer, list.for_frame_buffer(frame_buffer)))
         });
         let batch: Vec<_> = lists.collect();
         if batch.is_empty() { None } else { Some(self.gp.send_batch(batch).await) }

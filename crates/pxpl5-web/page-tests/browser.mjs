@@ -1,0 +1,237 @@
+// A headless Chromium with the page, driven by chromedriver, and what tests do with it.
+import { spawn, spawnSync } from "node:child_process";
+import { createServer } from "node:http";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { extname, join, normalize, resolve } from "node:path";
+import assert from "node:assert/strict";
+import { STORIES } from "../page/stories.js";
+
+export const [site, pictures, only] = process.argv.slice(2);
+mkdirSync(pictures, { recursive: true });
+export const MODELS = { ply: triangle(), obj: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", pdb: "ATOM      1  C   ALA A   1       0.000   0.000   0.000\nATOM      2  O   ALA A   1       1.200   0.000   0.000\n", broken: "ply\nformat ascii 1.0\nelement vertex x\n" };
+export const KINDS = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm", ".svg": "image/svg+xml", ".png": "image/png" };
+/** How the server answers for the machine: `well`, `missing`, or `slow`, with each of ten parts after 150 ms. */
+let answers = "well";
+export const answer = (how) => (answers = how);
+export const server = createServer(async (request, response) => {
+  const path = normalize(new URL(request.url, "http://x").pathname);
+  if (path.endsWith(".wasm") && answers === "missing") return response.writeHead(404).end();
+  try {
+    const name = path.endsWith("/") ? `${path}index.html` : path;
+    const bytes = readFileSync(join(site, name));
+    response.writeHead(200, { "content-type": KINDS[extname(name)] ?? "application/octet-stream", "content-length": bytes.length, "cache-control": "no-store" });
+    if (name.endsWith(".wasm") && answers === "slow") {
+      for (let part = 0; part < 10; part += 1) {
+        response.write(bytes.subarray(Math.floor((part * bytes.length) / 10), Math.floor(((part + 1) * bytes.length) / 10)));
+        await new Promise((later) => setTimeout(later, 150));
+      }
+      return response.end();
+    }
+    response.end(bytes);
+  } catch {
+    response.writeHead(404).end();
+  }
+});
+await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
+export const page = `http://127.0.0.1:${server.address().port}/live/`;
+
+export const port = 20000 + Math.floor(Math.random() * 20000);
+export const driver = spawn("chromedriver", [`--port=${port}`], { stdio: "ignore" });
+export const base = `http://127.0.0.1:${port}`;
+
+export async function ask(method, path, body) {
+  const response = await fetch(base + path, { method, body: body && JSON.stringify(body) });
+  const { value } = await response.json();
+  if (value?.error) throw new Error(`${path}: ${value.message}`);
+  return value;
+}
+
+export async function driverIsReady() {
+  for (let tries = 0; tries < 100; tries += 1) {
+    try {
+      return await ask("GET", "/status");
+    } catch {
+      await new Promise((later) => setTimeout(later, 100));
+    }
+  }
+  throw new Error("chromedriver does not answer");
+}
+
+await driverIsReady();
+export const args = ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"];
+export const wanted = { capabilities: { alwaysMatch: { "goog:chromeOptions": { args }, "goog:loggingPrefs": { browser: "ALL" } } } };
+const { sessionId } = await ask("POST", "/session", wanted);
+export const session = `/session/${sessionId}`;
+export const run = (script, ...values) => ask("POST", `${session}/execute/sync`, { script, args: values });
+export const later = (ms) => new Promise((done) => setTimeout(done, ms));
+
+export async function until(what, script, ms = 20000) {
+  const begun = Date.now();
+  while (Date.now() - begun < ms) {
+    if (await run(`return ${script}`)) return Date.now() - begun;
+    await later(50);
+  }
+  throw new Error(`waited ${ms} ms for ${what}`);
+}
+
+/** Until the worker has answered all that was asked of it. */
+export const settled = (ms) => until("the worker", "document.documentElement.dataset.asked === '0' && document.documentElement.dataset.ready === 'true'", ms);
+
+export async function open(hash = "") {
+  await ask("POST", `${session}/url`, { url: "about:blank" });
+  const begun = Date.now();
+  await ask("POST", `${session}/url`, { url: page + hash });
+  await settled(20000);
+  return Date.now() - begun;
+}
+
+export const text = (id) => run(`return document.getElementById('${id}').textContent`);
+export async function click(selector) {
+  await run(`document.querySelector(${JSON.stringify(selector)}).click()`);
+}
+export async function press(selector) {
+  await click(selector);
+  await settled();
+}
+export const set = (id, value) => run(`const s = document.getElementById('${id}'); s.value = ${value}; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change'))`);
+/** Colours other than black in a canvas. */
+export const lit = (selector = "#eyes canvas") => run(`
+  const canvas = document.querySelector('${selector}');
+  const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+  const colours = new Set();
+  for (let i = 0; i < data.length; i += 4) colours.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+  colours.delete(0);
+  return colours.size;`);
+
+/** A file as if somebody had dropped it onto the page. */
+export const drop = (name, contents) => run(`
+  const data = new DataTransfer();
+  data.items.add(new File([${JSON.stringify(contents)}], '${name}'));
+  dispatchEvent(new DragEvent('drop', { dataTransfer: data, cancelable: true }))`);
+
+/** A drag of 60 pixels to the right across the first picture, in half a second. */
+export async function drag() {
+  await run("document.querySelector('#eyes canvas').scrollIntoView({ block: 'center' })");
+  const box = await run("const b = document.querySelector('#eyes canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]");
+  const [x, y] = [Math.round(box[0] + box[2] / 2), Math.round(box[1] + box[3] / 2)];
+  const moves = Array.from({ length: 12 }, (_, n) => ({ type: "pointerMove", duration: 40, x: x + 5 * (n + 1), y }));
+  const actions = [{ type: "pointerMove", duration: 0, x, y }, { type: "pointerDown", button: 0 }, ...moves, { type: "pointerUp", button: 0 }];
+  await ask("POST", `${session}/actions`, { actions: [{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions }] });
+}
+
+/** The link of what was recorded finds the same hash on the page, and its command the same. */
+export async function recordedAgain() {
+  const link = await run("return document.getElementById('link').hash");
+  assert.match(link, /motion=/);
+  const recording = await run("return fetch(document.querySelector('#needs a').href).then((file) => file.text())");
+  const folder = resolve(pictures);
+  writeFileSync(join(folder, "recorded.csv"), recording);
+  await sameHash(folder);
+  const hash = await text("hash");
+  await open(link);
+  assert.equal(await text("hash"), hash);
+}
+
+export function triangle() {
+  const head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  return `${head}0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n`;
+}
+
+/** Simulated time that the page shows, milliseconds. */
+export const shownMs = async () => (await run("return Number(document.getElementById('time').dataset.ps)")) / 1e9;
+export const emulate = (name, value) => ask("POST", `${session}/goog/cdp/execute`, { cmd: "Emulation.setEmulatedMedia", params: { features: [{ name, value }] } });
+export const key = (value) => ask("POST", `${session}/actions`, { actions: [{ type: "key", id: "keys", actions: [{ type: "keyDown", value }, { type: "keyUp", value }] }] });
+export const LEFT = "\uE012";
+export const RIGHT = "\uE014";
+
+/** What axe-core finds against WCAG 2.1 A and AA on the present page; null where it is not there. */
+export async function axe() {
+  if (!process.env.AXE) return null;
+  await run(readFileSync(process.env.AXE, "utf8"));
+  const { violations } = await ask("POST", `${session}/execute/async`, {
+    script: "const done = arguments[0]; axe.run({ runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'] }).then(done)", args: [],
+  });
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(" ")).slice(0, 4).join(", ")}`);
+}
+
+export async function accessible(what) {
+  const found = await axe();
+  if (found === null) return console.log("   axe-core is not there: not checked");
+  assert.deepEqual(found, [], what);
+}
+
+/** Goes through a story; `look` is called at each step that has paused. */
+export async function tell(name, look) {
+  await open();
+  await click(`[data-story=${name}]`);
+  const { steps } = STORIES[name];
+  for (const [n, step] of steps.entries()) {
+    const begun = Date.now();
+    if (step.hand) await later(1500);
+    else await until(`step ${n + 1} of ${name}`, `document.documentElement.dataset.story === '${name} ${n + 1} paused'`, 60000);
+    if (!step.hand) await settled();
+    console.log(`   ${name} ${n + 1}: ${((Date.now() - begun) / 1000).toFixed(1)} s, stands at ${(await shownMs()).toFixed(1)} ms; ${await text("story-paused")}`);
+    assert.equal(await text("error"), "");
+    assert.equal(await text("story-say"), step.say);
+    await look?.(n, step);
+    await click("#story-next");
+  }
+}
+
+export async function picture(name, width, height = 1400) {
+  await ask("POST", `${session}/window/rect`, { width, height });
+  await ask("POST", `${session}/goog/cdp/execute`, {
+    cmd: "Emulation.setDeviceMetricsOverride",
+    params: { width, height, deviceScaleFactor: 1, mobile: false },
+  });
+  const { data } = await ask("POST", `${session}/goog/cdp/execute`, {
+    cmd: "Page.captureScreenshot", params: { captureBeyondViewport: true },
+  });
+  writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
+  const overflow = await run("return document.documentElement.scrollWidth - document.documentElement.clientWidth");
+  assert.equal(overflow, 0, `nothing sticks out at ${width} pixels`);
+}
+
+/** What the command prints as the hash of an experiment's trace at an instant; null where it is not built. */
+export function hashOfTheCommand(command, folder) {
+  const program = resolve(process.env.PXPL5 ?? "target/debug/pxpl5");
+  const parts = command.split('"').flatMap((part, n) => (n % 2 ? [part] : part.trim().split(/\s+/).filter(Boolean)));
+  const { stdout, error } = spawnSync(program, parts.slice(1), { encoding: "utf8", cwd: folder });
+  if (error) return null;
+  return /^trace {3}(\S+)$/m.exec(stdout)?.[1] ?? "none";
+}
+
+/** The command finds the hash that the page shows; said where it is not built. */
+export async function sameHash(folder) {
+  const [hashes, commands] = [(await text("hash")).split(" "), (await text("command")).split("\n")];
+  commands.forEach((command, n) => {
+    const found = hashOfTheCommand(command, folder);
+    console.log(found === null ? "   the command is not built: its hash was not compared" : `   ${command}\n   trace ${found}`);
+    if (found !== null) assert.equal(found, hashes[n]);
+  });
+}
+
+/** Simulated by real time over some seconds of running. */
+export async function speed(seconds) {
+  await run("document.getElementById('slower').value = 0");
+  await click("#go");
+  await later(500);
+  const [from, begun] = [await shownMs(), Date.now()];
+  await later(seconds * 1000);
+  const [to, ended] = [await shownMs(), Date.now()];
+  await press("#go");
+  return (to - from) / (ended - begun);
+}
+
+/** Seconds of CPU that all processes of the browser have taken. */
+export function cpuSeconds() {
+  const { stdout } = spawnSync("ps", ["-eo", "pid,ppid,cputimes"], { encoding: "utf8" });
+  const all = stdout.trim().split("\n").slice(1).map((line) => line.trim().split(/\s+/).map(Number));
+  const mine = new Set([driver.pid]);
+  for (let found = true; found; ) {
+    found = false;
+    for (const [pid, parent] of all) if (mine.has(parent) && !mine.has(pid)) found = Boolean(mine.add(pid));
+  }
+  return all.filter(([pid]) => mine.has(pid)).reduce((sum, [, , seconds]) => sum + seconds, 0);
+}
+

@@ -1,0 +1,96 @@
+// Tests of the first screen and of the stories.
+import assert from "node:assert/strict";
+import { STORIES } from "../page/stories.js";
+import { accessible, ask, click, emulate, key, later, lit, only, open, page, picture, press, run, session, settled, shownMs, tell, text, until } from "./browser.mjs";
+
+export default {
+  async "the first screen has a moving picture within 2 s, one sentence and four stories"() {
+    await open();
+    const begun = Date.now();
+    await ask("POST", `${session}/url`, { url: "about:blank" });
+    await ask("POST", `${session}/url`, { url: page });
+    await until("a picture", "document.querySelector('#eyes canvas')");
+    const took = Date.now() - begun;
+    console.log(`   first picture after ${took} ms`);
+    assert.ok(took < 2000);
+    await later(500);
+    const before = await run("return document.querySelector('#eyes canvas').toDataURL()");
+    await later(500);
+    assert.notEqual(await run("return document.querySelector('#eyes canvas').toDataURL()"), before, "the picture moves");
+    assert.ok((await lit()) > 3);
+    assert.equal(await run("return document.querySelectorAll('#start [data-story]').length"), 4);
+    assert.equal(await run("return document.querySelectorAll('form:not([hidden]) select').length > 0 && getComputedStyle(document.getElementById('lab')).display"), "none");
+    await accessible("first screen");
+  },
+  async "each story runs to its end and goes on in the laboratory with the same experiment"() {
+    for (const [name, { settings, beside, steps }] of Object.entries(STORIES)) {
+      assert.ok(steps.length >= 5 && steps.length <= 6, name);
+      for (const { say } of steps) assert.equal(say.match(/[.?!](?= |$)/g).length, 2, `two sentences: ${say}`);
+      await tell(name, async (n, step) => {
+        if (!only || only.startsWith("each")) await picture(`story-${name}-${n + 1}`, 1280, 900);
+        const shown = await run("return [...document.querySelectorAll('#front > section')].filter((part) => part.checkVisibility()).map((part) => part.id)");
+        assert.equal(shown.includes("diagram-part"), step.show.includes("diagram"), `${name} ${n + 1}`);
+        if (n === steps.length - 1) await accessible(name);
+      });
+      await settled();
+      assert.equal(await run("return document.body.dataset.mode"), "lab");
+      const given = await run("return Object.fromEntries([...document.querySelectorAll('#settings select, #settings input')].map((field) => [field.name, field.value]))");
+      for (const [key, value] of Object.entries(settings)) assert.equal(given[key], value, `${name}: ${key}`);
+      assert.equal(given.beside, beside ?? "");
+      const stands = await shownMs();
+      await press('[data-step="field"]');
+      assert.ok((await shownMs()) > stands, "the same machine goes on");
+    }
+  },
+  async "the lag of Slats is smaller than that of Rendering Control, and both are told"() {
+    await open("#story=lag&step=3");
+    await until("the step", "document.documentElement.dataset.story === 'lag 3 paused'", 60000);
+    const ages = await run("return [...document.querySelectorAll('.age strong')].map((age) => parseFloat(age.textContent))");
+    console.log(`   ages: ${ages.join(" and ")} ms`);
+    assert.equal(ages.length, 2);
+    assert.ok(ages[1] < ages[0]);
+  },
+  async "a story can be gone back in, and its steps have links"() {
+    await open("#story=inside&step=3");
+    await until("the step", "document.documentElement.dataset.story === 'inside 3 paused'", 60000);
+    const hash = await text("hash");
+    await click("#story-next");
+    await until("the step", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);
+    await click("#story-back");
+    await until("the step", "document.documentElement.dataset.story === 'inside 3 paused'", 60000);
+    assert.equal((await run("return location.hash")), "#story=inside&step=3");
+    assert.ok(hash.length > 8);
+  },
+  async "with reduced motion nothing moves by itself, and a step stands at once where something happens"() {
+    await emulate("prefers-reduced-motion", "reduce");
+    await open();
+    await later(300);
+    const stands = await shownMs();
+    await later(500);
+    assert.equal(await shownMs(), stands);
+    assert.ok((await lit()) > 3);
+    await open("#story=inside&step=4");
+    await until("the step", "document.documentElement.dataset.story === 'inside 4 paused'", 20000);
+    await emulate("prefers-reduced-motion", "no-preference");
+  },
+  async "in RENDER and COPY the regions that are drawn and copied are marked in two colours, with a legend"() {
+    const colours = `
+      const data = document.querySelector('#eyes .over').getContext('2d').getImageData(0, 0, 640, 480).data;
+      const near = (at, [r, g, b]) => data[at + 3] > 200 && Math.abs(data[at] - r) + Math.abs(data[at + 1] - g) + Math.abs(data[at + 2] - b) < 24;
+      const count = [0, 0];
+      for (let at = 0; at < data.length; at += 4) [[127, 214, 168], [255, 209, 102]].forEach((colour, n) => near(at, colour) && (count[n] += 1));
+      return count`;
+    await open("#story=inside&step=4");
+    await until("RENDER", "document.documentElement.dataset.story === 'inside 4 paused'", 60000);
+    await settled();
+    const [drawn] = await run(colours);
+    await click("#story-next");
+    await until("COPY", "document.documentElement.dataset.story === 'inside 5 paused'", 60000);
+    await settled();
+    const [also, copied] = await run(colours);
+    console.log(`   marked pixels: drawn ${drawn} in RENDER, drawn ${also} and copied ${copied} in COPY`);
+    assert.ok(drawn > 200 && copied > 200);
+    assert.match(await text("region-legend"), /drawing.*on its way/s);
+    assert.ok(await run("return document.getElementById('region-legend').checkVisibility()"));
+  },
+};

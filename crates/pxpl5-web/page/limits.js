@@ -1,0 +1,77 @@
+// What limits a run: the waits of its last pictures, how busy its boards are, and what would fit if nothing is shown.
+import { inMs, nameOf } from "./draw.js";
+
+const make = (name, given = {}, ...inner) => {
+  const element = Object.assign(document.createElement(name), given);
+  element.append(...inner);
+  return element;
+};
+
+/** A share of 0 to 1 for reading. What was not measured has a dash. */
+export const percent = (share) => (typeof share === "number" && Number.isFinite(share) ? `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %` : "-");
+
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+
+/** Rows of how busy boards are: name, share, and what is known besides. */
+function busyRows({ host, gps, renderers, ring, ports }) {
+  const idle = ({ idle: count }) => (count > 0 ? `, ${count} idle` : "");
+  const most = (kind, shares) => `busiest: ${kind} ${shares.busiest} with ${percent(shares.max)}${idle(shares)}`;
+  const millions = (rate) => (rate / 1e6).toFixed(rate < 1e7 ? 1 : 0);
+  return [
+    ["Host", host, ""],
+    ["Graphics processors", gps.busy.mean, `${most("GP", gps.busy)}; on average EDIT and TRANSFORM ${percent(gps.work)}, messages ${percent(gps.messages)}, tokens ${percent(gps.tokens)}`],
+    ["Renderers", renderers.executing.mean, `${most("renderer", renderers.executing)}; on average copying ${percent(renderers.copying)}, waiting for commands ${percent(renderers.waiting)}`],
+    ["Ring", ring.channels.mean, `${most("channel", ring.channels)}; ${millions(ring.words_per_second)} of ${millions(ring.capacity)} million words a second`],
+    ...ports.each.map(({ port, busy }) => [`Port: ${port}`, busy, ""]),
+  ];
+}
+
+function pathPart(path) {
+  if (!path) return [make("p", { textContent: "No complete picture has been shown yet, so nothing is known of its waits." })];
+  const bar = make("div", { className: "stack" }, ...path.parts.map(({ what, share }, n) => {
+    const piece = make("i", { className: `part${n}`, title: `${what}: ${percent(share)}` });
+    piece.style.width = `${100 * share}%`;
+    return piece;
+  }));
+  const rows = path.parts.map(({ what, share, ms, board }, n) => make("tr", {},
+    make("th", { scope: "row" }, make("i", { className: `part${n}` }), capital(what)),
+    make("td", { textContent: percent(share) }), make("td", { textContent: inMs(ms) }), make("td", { className: "text", textContent: board ? `mostly ${board}` : "" })));
+  const head = make("thead", {}, make("tr", {}, ...["Wait", "Share", "Time", "Board"].map((textContent) => make("th", { scope: "col", textContent }))));
+  return [
+    make("p", {}, make("strong", { textContent: "Limited by " }), `${path.limited_by}.`), bar,
+    make("table", {}, make("caption", { textContent: `Waits of the last ${path.pictures} pictures, ${inMs(path.latency_ms)} on average from TRANSFORM to the screen` }), head, make("tbody", {}, ...rows)),
+  ];
+}
+
+function busyPart(utilisation) {
+  if (!utilisation) return [make("p", { textContent: "No time has passed yet." })];
+  const rows = busyRows(utilisation).map(([name, share, more]) => make("tr", {},
+    make("th", { scope: "row", textContent: name }), make("td", {}, percent(share)), make("td", { className: "text", textContent: more })));
+  const head = make("thead", {}, make("tr", {}, ...["Board", "Busy", "Details"].map((textContent) => make("th", { scope: "col", textContent }))));
+  return [make("table", {}, make("caption", { textContent: "Share of the time since the start for which boards were busy" }), head, make("tbody", {}, ...rows))];
+}
+
+/** The waits of the last pictures and the use of the boards, for each machine. */
+export function drawLimits(place, machines, names) {
+  place.replaceChildren(...machines.map(({ limits: { path, utilisation } }, n) =>
+    make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation))));
+}
+
+/** What "in time" means for a pipeline, as far as it has a deadline of its own. */
+function deadlineOf(name) {
+  if (name === "slats") return " (within one field, a sixtieth of a second)";
+  return name.startsWith("jitp") ? " (before the beam reaches its lines)" : "";
+}
+
+/** Says why a machine shows nothing, and what would fit: `found` is the answer of the worker, null before it has come. `use` is called
+ *  with a number of triangles to build. */
+export function drawHeavy(place, name, found, use) {
+  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen is empty, unfinished or too old. `;
+  if (found === null) return place.replaceChildren(why, "Looking for the number of triangles that would fit ...");
+  const { primitives, in_time: fits } = found;
+  const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "triangle" : "triangles"}. `;
+  if (!fits) return place.replaceChildren(why, has, "Not even one triangle of this scene would be in time: choose another scene or pipeline.");
+  const button = make("button", { type: "button", textContent: `Use ${fits.toLocaleString("en")} triangles` });
+  button.addEventListener("click", () => use(fits));
+  return place.replaceChildren(why, has, `About ${fits.toLocaleString("en")} would do. `, button);
+}
