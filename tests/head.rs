@@ -49,7 +49,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
     ];
     let only = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
     let query =
-        CompareQuery { shared: file(&shared), only, seeds: vec![1], limits: false, pictures: false, confidence: 0.95 };
+        CompareQuery { shared: file(&shared), only, seeds: vec![1], limits: false, pictures: false, confidence: 0.95, until: None };
     let comparison = query.run(|_, _| ()).expect("in range");
     for (name, pipeline, raster) in rows {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];

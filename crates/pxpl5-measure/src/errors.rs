@@ -2,22 +2,24 @@
 
 use crate::percentiles::Percentiles;
 use pxpl5_display::Display;
-use pxpl5_run::{Raster, Reprojection};
+use pxpl5_run::{Raster, Reprojection, number_or_nan};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Errors of one field (one display period).
-#[derive(Clone, Copy, PartialEq, Serialize)]
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FieldMisregistration {
     /// Number of the display period in which the errors were evaluated.
     pub field: PeriodNumber,
     /// Start of the period in simulated time, in seconds.
     pub time_s: f64,
     /// Mean error over the pixels of the grid.
+    #[serde(deserialize_with = "number_or_nan")]
     pub mean_px: f64,
     /// Error of the pixel in the middle, in pixels.
+    #[serde(deserialize_with = "number_or_nan")]
     pub centre_px: f64,
 }
 

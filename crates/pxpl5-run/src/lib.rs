@@ -99,7 +99,7 @@ pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use samples::{KEPT_SAMPLES, Samples};
 pub use says::{PixelField, bit_of, in_ms, in_us};
 pub use so_far::SoFar;
-pub use statistics::{DefinedStatistics, Statistics};
+pub use statistics::{DefinedStatistics, Statistics, number_or_nan};
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
 pub use sums::{FinalResults, ObserverFactory, StreamingObserver};

@@ -2,14 +2,15 @@
 
 use crate::numbers::count_of;
 use pxpl5::Cause;
-use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
+use pxpl5::compare::{Comparison, ComparisonRow, IntervalMethod, MeanInterval};
 use std::fmt::Write as _;
 
 /// Name of each column, its unit, and its width in characters.
-const COLUMNS: [(&str, &str, usize); 14] = [
+const COLUMNS: [(&str, &str, usize); 15] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
     ("turn", "ms", 7),
+    ("figure 19", "ms", 10),
     ("predicts", "ms", 9),
     ("updates", "Hz", 8),
     ("not shown", "", 12),
@@ -32,23 +33,62 @@ pub(super) fn text(comparison: &Comparison) -> String {
     let _ = writeln!(text, "\n{}", header());
     comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
     text.push_str(&best(comparison));
+    text.push_str(&intervals(comparison));
+    text.push_str(&imprecise(comparison));
     text.push_str(&causes(comparison));
     text.push_str(
         "\nto light: from the head's pose to the light of the picture's middle; turn: the same of an orientation alone, which a display with\n\
-         faces looks up at scan-out; predicts: from the newest measurement to the instant that a picture is drawn for; updates: new pictures a\n\
-         second, of frameless rendering passes over all blocks of the screen (docs/results.md); interval: where the mean lies, by the seeds; n:\n\
-         evaluated pixels; best with: the predictor with the least error of the first seed; - : no sample was evaluated; ! : pictures that\n\
-         were due were not shown, so the error is of the others; + : evaluated from a later field on than the other rows. Rows with a\n\
-         mark are never the best.\n",
+         faces looks up at scan-out; figure 19: the sum of two means that the papers print, from the pose to its report and from an eye's\n\
+         TRANSFORM to the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: from the newest measurement to the\n\
+         instant that a picture is drawn for; updates: new pictures a second, of frameless rendering passes over all blocks of the screen\n\
+         (docs/results.md); interval: where the mean lies; n: evaluated pixels; best with: the predictor with the least error of the first\n\
+         seed; - : no sample was evaluated; ! : pictures that were due were not shown, so the error is of the others; + : evaluated from a\n\
+         later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }
 
+/// Returns a sentence for each method of the intervals, with the rows that have it.
+fn intervals(comparison: &Comparison) -> String {
+    let confidence = comparison.confidence * 100.0;
+    let mut text = String::new();
+    for method in IntervalMethod::ALL {
+        let rows = comparison.pipelines.iter().filter(|row| row.was_evaluated() && row.error.mean_px.method == method);
+        let names: Vec<String> = rows.map(with_blocks).collect();
+        if !names.is_empty() {
+            let _ = writeln!(text, "Intervals of {confidence:.0} %, {}: {}.", method.words(), names.join(", "));
+        }
+    }
+    text
+}
+
+/// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
+fn with_blocks(row: &ComparisonRow) -> String {
+    let blocks = row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
+    format!("{}{}", row.pipeline, blocks.unwrap_or_default())
+}
+
+/// Returns sentences about the seeds of the rows, if the comparison added seeds for a precision.
+fn imprecise(comparison: &Comparison) -> String {
+    let Some(width) = &comparison.until_precision else { return String::new() };
+    let rows = |precise: bool| {
+        let rows = comparison.pipelines.iter().filter(move |row| row.is_precise == Some(precise));
+        rows.map(|row| format!("{} ({})", row.pipeline, count_of(row.seeds, "seed"))).collect::<Vec<_>>().join(", ")
+    };
+    let mut text = String::new();
+    for (precise, is) in [(true, "narrower"), (false, "not narrower")] {
+        if !rows(precise).is_empty() {
+            let _ = writeln!(text, "Intervals {is} than {width}: {}.", rows(precise));
+        }
+    }
+    text
+}
+
 fn heading(comparison: &Comparison) -> String {
-    let Comparison { scene, triangles, machine, boards, fields, seeds, head, .. } = comparison;
+    let Comparison { scene, triangles, machine, boards, fields, seeds, head, hmd, .. } = comparison;
     let head: Vec<String> = head.iter().map(|(key, value)| format!("{key} {value}")).collect();
     format!(
-        "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n",
+        "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n{hmd}\n",
         count_of(*triangles, "triangle"),
         count_of(boards[0], "GP"),
         count_of(boards[1], "renderer"),
@@ -98,6 +138,7 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
         number(row.turn_to_light_ms.mean, 2),
+        number(row.tracking_and_rendering_ms.mean, 2),
         number(row.prediction_interval_ms.mean, 2),
         number(row.updates_hz.mean, 2),
         missed,

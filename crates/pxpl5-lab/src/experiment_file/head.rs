@@ -80,6 +80,12 @@ impl HeadChoice {
         Arc::clone(&self.head)
     }
 
+    /// Returns true if the motion of the head is a recording.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        is_recording(&self.motion)
+    }
+
     /// Returns the warnings about the recording of the head's motion.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.head.motion().warnings().into_iter().map(|warning| format!("{}: {warning}", self.motion))

@@ -40,6 +40,9 @@ mod space;
 mod store;
 mod table;
 
+pub(crate) use inputs::inputs_of;
+pub(crate) use store::{line_of, lock, opened};
+
 pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
