@@ -75,7 +75,7 @@ pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, out_of_range, 
 pub use face_notes::{RequestedUpdate, RequestedUpdates};
 pub use faces::{FaceHistory, ShownUpdate};
 pub use fingerprint::Fingerprint;
-pub use head::{Head, HeadError};
+pub use head::{Head, HeadError, HeadPlace};
 pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use keep::Keep;

@@ -47,6 +47,11 @@ const COMMON: &[(&str, &str)] = &[
         "the instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace",
     ),
     (
+        "head.place",
+        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins; default) or world (the \
+          poses are metres in the scene's coordinates)",
+    ),
+    (
         "head.filter",
         "numbers of the predictor: tuned (for the pipeline's own interval and the motion, with other noise than the run's) or given \
           (those of tracking.filter)",
