@@ -3,16 +3,16 @@
 
 mod support;
 
-use pxpl5::compare::{CompareQuery, edge_scene};
 use glam::{DQuat, DVec3};
+use pxpl5::compare::{CompareQuery, edge_scene};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{
-    Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster,
-    Viewpoint,
+    Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan,
+    Raster, Viewpoint,
 };
 use pxpl5::{Film, FilmSurfaces};
 use std::sync::Arc;
@@ -50,8 +50,15 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         ("vdrt", "slats", "vdrt"),
     ];
     let only = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
-    let query =
-        CompareQuery { shared: file(&shared), only, seeds: vec![1], limits: false, pictures: false, confidence: 0.95, until: None };
+    let query = CompareQuery {
+        shared: file(&shared),
+        only,
+        seeds: vec![1],
+        limits: false,
+        pictures: false,
+        confidence: 0.95,
+        until: None,
+    };
     let comparison = query.run(|_, _| ()).expect("in range");
     for (name, pipeline, raster) in rows {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];

@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 use parameters::text_of;
-use pxpl5::lab::manifest::Manifest;
 use pxpl5::compare::ROWS_FOLDER;
+use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
 use serde_json::{Map, Value};
 use std::fs;

@@ -5,8 +5,18 @@ mod support;
 use serde_json::Value;
 use support::{Folder, err};
 
-const SHORT: [&str; 10] =
-    ["compare", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--only", "slats,jitp-field,ideal", "--json"];
+const SHORT: [&str; 10] = [
+    "compare",
+    "--scene",
+    "full-screen:2",
+    "--fields",
+    "24",
+    "--seeds",
+    "2",
+    "--only",
+    "slats,jitp-field,ideal",
+    "--json",
+];
 
 fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&SHORT, more].concat()
@@ -47,7 +57,11 @@ fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
     // Without --resume nothing is lost.
     let refused = folder.run(&with(&["--out", "o"]));
     assert_eq!(refused.status.code(), Some(2));
-    assert!(err(&refused).contains("1 of 3 rows of an interrupted comparison are here; continue with --resume"), "{}", err(&refused));
+    assert!(
+        err(&refused).contains("1 of 3 rows of an interrupted comparison are here; continue with --resume"),
+        "{}",
+        err(&refused)
+    );
     let resumed = folder.run(&with(&["--out", "o", "--resume"]));
     assert!(resumed.status.success(), "{}", err(&resumed));
     assert!(err(&resumed).contains("1 of 3 rows were finished before"), "{}", err(&resumed));
@@ -76,7 +90,11 @@ fn rows_of_other_settings_are_refused_and_the_key_is_named() {
     ] {
         let refused = folder.run(&with(&[&["--out", "o", "--resume"], more].concat()));
         assert_eq!(refused.status.code(), Some(2), "{more:?}");
-        assert!(err(&refused).contains("rows are of another comparison") && err(&refused).contains(key), "{}", err(&refused));
+        assert!(
+            err(&refused).contains("rows are of another comparison") && err(&refused).contains(key),
+            "{}",
+            err(&refused)
+        );
     }
     let mut rows = read(&folder, "o/rows/rows.jsonl").replacen("\"pipeline\"", "\"pipelin\"", 1);
     rows.push('\n');
@@ -103,7 +121,11 @@ fn a_recording_sets_the_length_and_has_an_interval_over_time() {
     recording(&folder, "head.csv", 200);
     let usual = ["compare", "--scene", "full-screen:2", "--only", "slats,jitp-field", "--head", "head.csv", "--json"];
     let run = |more: &[&str]| folder.run(&[&usual, more].concat());
-    for (more, fields) in [(&["--seeds", "1"][..], 119), (&["--seeds", "2", "--fields", "120"], 119), (&["--seeds", "1", "--fields", "60"], 60)] {
+    for (more, fields) in [
+        (&["--seeds", "1"][..], 119),
+        (&["--seeds", "2", "--fields", "120"], 119),
+        (&["--seeds", "1", "--fields", "60"], 60),
+    ] {
         let output = run(more);
         assert!(output.status.success(), "{}", err(&output));
         let warning = "the recording of the head ends before 120 fields: each run has 119 fields";

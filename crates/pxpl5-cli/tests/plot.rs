@@ -172,8 +172,7 @@ fn a_point_of_a_sweep_with_pictures_not_shown_is_hollow_and_its_counts_are_in_th
     let axes = json!([{"paths": ["n"], "steps": [[1], [2]]}, {"paths": ["seed"], "steps": [[1], [2]]}]);
     let mut text = json!({"schema": "pxpl5-sweep/1", "points": 4, "title": "t", "axes": axes}).to_string() + "\n";
     for (n, seed, missed) in [(1, 1, 0), (1, 2, 0), (2, 1, 0), (2, 2, 7)] {
-        let measured =
-            json!({"error_px.mean": 3.0 + f64::from(seed), "pictures_due": 20, "missed_retraces": missed, "error_px.n": 500});
+        let measured = json!({"error_px.mean": 3.0 + f64::from(seed), "pictures_due": 20, "missed_retraces": missed, "error_px.n": 500});
         let parameters = json!({"n": n, "seed": seed});
         let row = json!({"point": 0, "status": "done", "parameters": parameters, "measured": measured, "error": null});
         text += &(row.to_string() + "\n");

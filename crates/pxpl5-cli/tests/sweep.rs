@@ -367,7 +367,8 @@ fn every_row_carries_the_pictures_due_and_not_shown_and_the_evaluated_pixels() {
     let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        let number = |name: &str| cells[names.iter().position(|it| *it == name).expect(name)].parse::<f64>().expect(name);
+        let number =
+            |name: &str| cells[names.iter().position(|it| *it == name).expect(name)].parse::<f64>().expect(name);
         assert!(number("pictures_due") > 0.0 && number("error_px.n") > 0.0, "{line}");
         assert_eq!(number("missed_retraces"), 0.0, "{line}");
     }

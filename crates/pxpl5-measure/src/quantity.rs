@@ -50,7 +50,7 @@ const LATENCY: &str = "latency as the pipeline defines it (see the report), over
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
-const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of the swap included";
+const EYE_RETRACES: &str = "retraces from the start of an eye's TRANSFORM to the swap, that of the swap included, over both eyes of all complete pictures in the window; none for Slats";
 
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields of the window, where a picture is seen that was shown in the window, complete and in time; only with a head.motion";
 

@@ -99,7 +99,7 @@ pub(crate) fn compare<'py>(
         confidence: pxpl5::compare::CONFIDENCE,
         until: None,
     };
-    query.limit_to_recording().map_err(wrong_setting)?;
+    query.set_length().map_err(wrong_setting)?;
     let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }

@@ -91,9 +91,6 @@ pub(crate) struct CompareArgs {
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
-/// Default number of display fields in each run: five seconds.
-const FIELDS: i64 = 300;
-
 /// Maximum speed of the head's rotation (pan) for the pictures of a vertical edge, in degrees per second.
 const FASTEST: f64 = 10_000.0;
 
@@ -124,8 +121,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let store = args.out.as_ref().map(rows_of).transpose()?;
     let found = store.as_ref().map_or(0, CompareStore::found);
     let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
-    let comparison =
-        query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
+    let comparison = query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
     progress.clear();
     let comparison = comparison?;
     // Write all files, then publish the folder in one step.
@@ -172,14 +168,11 @@ fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     Ok(file)
 }
 
-/// Sets the length of the runs: that of the settings, of a recording, or [`FIELDS`].
+/// Sets the length of the runs. Prints a warning if a recording is shorter than the settings ask.
 fn set_length(query: &mut CompareQuery, quiet: bool) -> Result<(), CliError> {
-    if let Some(RecordedLength { fields, asked: Some(asked) }) = query.limit_to_recording()? {
+    if let Some(RecordedLength { fields, asked: Some(asked) }) = query.set_length()? {
         let [asked, fields] = [asked, fields].map(|fields| count_of(fields, "field"));
         terminal::warn(&[format!("the recording of the head ends before {asked}: each run has {fields}")], quiet);
-    }
-    if query.shared.place_of("fields").is_none() {
-        query.shared.set("fields", FIELDS, "compare")?;
     }
     Ok(())
 }

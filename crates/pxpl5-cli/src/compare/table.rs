@@ -64,7 +64,8 @@ fn intervals(comparison: &Comparison) -> String {
 
 /// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
 fn with_blocks(row: &ComparisonRow) -> String {
-    let blocks = row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
+    let blocks =
+        row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 

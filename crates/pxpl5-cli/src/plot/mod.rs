@@ -224,7 +224,9 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
 /// Returns the confidence and the method of the intervals in words.
 fn interval(args: &PlotArgs, kind: RowsKind) -> String {
     match kind {
-        RowsKind::Sweep => format!("{} % of the mean, Student's t, of the logarithm if all are positive", args.confidence * 100.0),
+        RowsKind::Sweep => {
+            format!("{} % of the mean, Student's t, of the logarithm if all are positive", args.confidence * 100.0)
+        }
         RowsKind::Comparison => "as in the comparison: see `confidence` and each row's `method`".to_owned(),
     }
 }

@@ -3,8 +3,8 @@
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
 use parameters::nearest;
-use pxpl5::{Measure, Statistics};
 use pxpl5::compare::MeanInterval;
+use pxpl5::{Measure, Statistics};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 

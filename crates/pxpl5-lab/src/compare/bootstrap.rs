@@ -135,7 +135,8 @@ fn block_length(series: &[f64]) -> usize {
         return 1;
     }
     let bound = 2.0 * (log / n).sqrt();
-    let is_flat = |lag: usize| (lag + 1..=lag + run).all(|k| covariances.get(k).is_none_or(|c| c.abs() < bound * covariances[0]));
+    let is_flat =
+        |lag: usize| (lag + 1..=lag + run).all(|k| covariances.get(k).is_none_or(|c| c.abs() < bound * covariances[0]));
     let flat_from = (0..=greatest).find(|lag| is_flat(*lag)).unwrap_or(greatest);
     let window = (2 * flat_from).clamp(1, greatest);
     // The flat-top window is 1 up to the half, then falls to 0.
@@ -195,7 +196,8 @@ mod tests {
         const N: usize = 2_000;
         const SERIES: u64 = 60;
         for phi in [0.0, 0.3, 0.8] {
-            let estimates = (0..SERIES).map(|seed| BlockBootstrap::of(&ar1(phi, N, mix(seed + 77))).expect("long").variance());
+            let estimates =
+                (0..SERIES).map(|seed| BlockBootstrap::of(&ar1(phi, N, mix(seed + 77))).expect("long").variance());
             let ratio = estimates.sum::<f64>() / SERIES as f64 / variance_of_mean(phi, N);
             assert!((0.8..1.15).contains(&ratio), "phi {phi}: {ratio} of the closed form");
         }
@@ -219,7 +221,8 @@ mod tests {
 
     #[test]
     fn blocks_are_longer_for_a_series_with_longer_memory() {
-        let [short, long] = [0.0, 0.9].map(|phi| BlockBootstrap::of(&ar1(phi, 1_000, 5)).expect("long").size().block_fields);
+        let [short, long] =
+            [0.0, 0.9].map(|phi| BlockBootstrap::of(&ar1(phi, 1_000, 5)).expect("long").size().block_fields);
         assert!(short <= 5 && long >= 3 * short, "{short}, {long}");
     }
 

@@ -14,26 +14,31 @@ pub struct RecordedLength {
     pub asked: Option<u64>,
 }
 
+/// Number of display fields of each run if neither the settings nor a recording give a length: five seconds.
+const USUAL_FIELDS: i64 = 300;
+
 impl CompareQuery {
-    /// Sets the length of the runs to the length of the recording that the head replays.
+    /// Sets the length of the runs, if the settings do not have one: the length of the recording that the head replays,
+    /// else five seconds. If the settings ask for more than the recording covers, they also get its length.
     ///
-    /// Does nothing and returns `None` in these cases: the motion is no recording, the recording is repeated without end,
-    /// the settings ask for fewer fields, or the settings ask for more fields and say that the head stands still behind
-    /// the recording's end.
+    /// Returns the length if it is that of a recording. A recording that is repeated without end has no length. Settings
+    /// may ask for more than the recording if they say that the head stands still behind its end.
     ///
     /// # Errors
     ///
     /// Fails if a setting is invalid, or if the registry has no compared pipeline.
-    pub fn limit_to_recording(&mut self) -> Result<Option<RecordedLength>, CompareError> {
+    pub fn set_length(&mut self) -> Result<Option<RecordedLength>, CompareError> {
         let plan = self.first_plan()?;
-        let Some(fields) = recorded_fields(&plan) else { return Ok(None) };
         let asked = self.shared.place_of("fields").map(|_| plan.fields);
         let may_pass_the_end = plan.head.as_ref().is_some_and(|head| head.head().motion().ends_ps().is_none());
-        if asked.is_some_and(|asked| asked <= fields || may_pass_the_end) {
-            return Ok(None);
+        let is_covered = |fields: &u64| asked.is_some_and(|asked| asked <= *fields || may_pass_the_end);
+        let recorded = recorded_fields(&plan).filter(|fields| !is_covered(fields));
+        if let Some(fields) = recorded {
+            self.shared.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "the length of the recording")?;
+        } else if asked.is_none() {
+            self.shared.set("fields", USUAL_FIELDS, "compare")?;
         }
-        self.shared.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "the length of the recording")?;
-        Ok(Some(RecordedLength { fields, asked }))
+        Ok(recorded.map(|fields| RecordedLength { fields, asked }))
     }
 }
 

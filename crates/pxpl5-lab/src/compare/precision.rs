@@ -116,7 +116,10 @@ mod tests {
 
     #[test]
     fn a_precision_without_a_unit_is_an_error_that_shows_both_units() {
-        assert_eq!(["5%", "0.2px"].map(|text| text.parse().ok()), [Some(Precision::Share(0.05)), Some(Precision::Pixels(0.2))]);
+        assert_eq!(
+            ["5%", "0.2px"].map(|text| text.parse().ok()),
+            [Some(Precision::Share(0.05)), Some(Precision::Pixels(0.2))]
+        );
         for text in ["5", "0%", "-1px", "NaN%", "", "infpx"] {
             let error = text.parse::<Precision>().expect_err(text).to_string();
             assert!(error.contains("10%") && error.contains("0.2px") && error.contains(text), "{error}");

@@ -107,7 +107,9 @@ pub enum CompareError {
         found: String,
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.
-    #[error("{path}: {rows} of {of} rows of an interrupted comparison are here; continue with --resume, or choose another folder")]
+    #[error(
+        "{path}: {rows} of {of} rows of an interrupted comparison are here; continue with --resume, or choose another folder"
+    )]
     Unfinished {
         /// Path of the file of rows.
         path: String,

@@ -5,7 +5,7 @@ use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, reprojection, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
-use pxpl5_run::{Aim, Head, Pipeline, HeadPlace};
+use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};
 use std::sync::Arc;
 use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
@@ -61,7 +61,8 @@ impl HeadChoice {
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
-        let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
+        let head =
+            head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
         let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);

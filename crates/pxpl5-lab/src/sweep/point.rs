@@ -1,7 +1,7 @@
 //! Simulates one point of a sweep.
 
-use super::{Sweep, measures};
 use super::header::json;
+use super::{Sweep, measures};
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
