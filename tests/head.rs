@@ -184,7 +184,7 @@ fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
         let jitp = Jitp::new(Viewpoint::Field, false);
         let experiment = Experiment::new(MachineConfig::small_hmd(), jitp, scene).head(head.placed(place));
         let outcome = experiment.fields(20).pixels(Pixels::Off).run().unwrap_or_else(|error| panic!("{error}"));
-        (outcome.head().expect("a head").truth(pxpl5::sim::Time(1_000_000_000)), start)
+        (outcome.head().expect("a head").truth(pxpl5::Time(1_000_000_000)), start)
     };
     let (in_world, start) = truth(HeadPlace::World);
     assert!((in_world.position - pose.position).length() < 1e-12);
