@@ -205,7 +205,7 @@ mod tests {
         variance / n * correlated
     }
 
-    /// The estimate is too small by about slope / (level block): 4 % at phi 0.3 to 12 % at phi 0.8 (Künsch 1989).
+    /// The estimate is too small by about slope / (level block): 6 % at phi 0.3 to 12 % at phi 0.8 (Künsch 1989).
     #[test]
     fn the_variance_of_the_mean_of_an_ar1_series_is_that_of_the_closed_form() {
         const N: usize = 2_000;
