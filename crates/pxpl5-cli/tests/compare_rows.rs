@@ -125,6 +125,7 @@ fn a_recording_sets_the_length_and_has_an_interval_over_time() {
         (&["--seeds", "1"][..], 119),
         (&["--seeds", "2", "--fields", "120"], 119),
         (&["--seeds", "1", "--fields", "60"], 60),
+        (&["--seeds", "1", "--fields", "150", "--set", "head.end=hold"], 150),
     ] {
         let output = run(more);
         assert!(output.status.success(), "{}", err(&output));

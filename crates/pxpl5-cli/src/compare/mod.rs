@@ -143,12 +143,14 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
 }
 
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {
+    // Seeds may be added up to the maximum, so the budget must cover the maximum.
+    let seeds = query.until.map_or(0, |until| until.max_seeds).max(query.seeds.len());
     let mut runs = Vec::new();
     for (row, plan) in query.plans()?.into_iter().enumerate() {
         // All rows have the same scene, so its warnings are printed once.
         let scene = scenes::load(&plan, quiet || row > 0)?;
         let work = Work::of(&plan, &scene, true);
-        runs.extend(query.seeds.iter().map(|_| work));
+        runs.extend(std::iter::repeat_n(work, seeds));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
