@@ -75,9 +75,9 @@ impl BlockBootstrap {
     /// - Values at the ends of the series are in fewer blocks than the others. The percentiles are therefore moved to
     ///   the given mean: by a factor if the mean is positive and all resampled means are at least 0, else by a
     ///   difference. The interval of a quantity that is never negative has no negative end.
-    /// - A series of k blocks tells the variance as poorly as k independent values do. The distance of the ends is
-    ///   therefore multiplied by the ratio of Student's t with k - 1 degrees of freedom to the normal distribution, and
-    ///   by the root of k / (k - 1).
+    /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of the ends is
+    ///   therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees of freedom to the
+    ///   normal distribution. The second is the root of k / (k - 1).
     #[must_use]
     pub fn interval(&self, mean: f64, confidence: f64) -> (f64, f64) {
         let centre = self.centre();
@@ -137,8 +137,8 @@ fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     sum / n as f64
 }
 
-/// Returns the block length with the least mean square error of the variance (Politis and White), at least 1 and at most
-/// a third of the series.
+/// Returns the block length with the least mean square error of the variance (Politis and White). The length is at least
+/// 1 and at most a third of the series.
 fn block_length(series: &[f64]) -> usize {
     let n = series.len() as f64;
     let log = n.log10();
