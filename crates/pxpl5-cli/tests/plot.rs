@@ -74,7 +74,7 @@ fn what_was_not_judged_is_no_zero() {
     assert!(run.status.success(), "{}", err(&run));
     assert!(err(&run).contains("8 rows have no number"), "{}", err(&run));
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
-    assert!(table.ends_with("split,4,,,0,,,3\n"), "{table}");
+    assert!(table.ends_with("split,4,,,0,,,3,,,\n"), "{table}");
     assert!(table.contains("whole,1,1.5,"), "{table}");
     sweep(&folder, |_, _, _| Value::Null);
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "none.svg"]);

@@ -49,8 +49,8 @@ pub(crate) struct CompareArgs {
     /// The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
-    /// Add seeds to each row until the interval of its mean error is narrower than this, from its lower to its upper
-    /// end: a share of the mean (10%) or pixels (0.2px). Not for recordings, because more seeds do not move them.
+    /// Add seeds to each row until the interval of its mean error, from end to end, is narrower than this. The width is
+    /// a share of the mean (10%) or pixels (0.2px). Not for recordings, because more seeds do not move them.
     #[arg(long, value_name = "WIDTH")]
     until_precision: Option<Precision>,
     /// Maximum number of seeds of a row with --until-precision.
@@ -117,7 +117,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     set_length(&mut query, args.quiet)?;
     admit(args.budget, &query, args.quiet)?;
     // The store keeps finished rows, so that an interruption loses only the rows in progress.
-    let rows_of = |out: &PathBuf| CompareStore::open(&out.join(ROWS_FOLDER), &query, args.resume);
+    let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
     let store = args.out.as_ref().map(rows_of).transpose()?;
     let found = store.as_ref().map_or(0, CompareStore::found);
     let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);

@@ -1,6 +1,7 @@
 //! The length of a comparison along a recording.
 
-use super::query::{CompareError, CompareQuery};
+use super::error::CompareError;
+use super::query::CompareQuery;
 use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
 use pxpl5_wire::NodeId;

@@ -7,6 +7,7 @@
 
 mod bootstrap;
 mod contender;
+mod error;
 mod gallery;
 mod interval;
 mod length;
@@ -14,6 +15,7 @@ mod pictures;
 mod precision;
 mod predictors;
 mod query;
+mod resume;
 mod row;
 mod store;
 mod trial;
@@ -24,12 +26,13 @@ pub use crate::head_names::{
 };
 pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::usual_rows;
+pub use error::CompareError;
 pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use precision::{MAX_SEEDS, Precision, PrecisionError, UntilPrecise};
 pub use predictors::{PredictorError, Predictors, predictors};
-pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
+pub use query::{CompareQuery, Comparison, LEAST_SEEDS};
 pub use row::{CauseShare, ComparisonRow, ErrorSpread, PredictorMean};
 pub use store::{CompareStore, ROWS_FOLDER, ROWS_SCHEMA};

@@ -74,9 +74,11 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds: from the measured pose
-    /// to the arrival of its report, and from the start of an eye's TRANSFORM to the swap. Shorter than
-    /// [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND, EDIT and the scan.
+    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the time
+    /// from the measured pose to the arrival of its report, the second from the start of an eye's TRANSFORM to the swap.
+    ///
+    /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
+    /// EDIT and the scan.
     pub tracking_and_rendering_ms: MeanInterval,
     /// Stages of the latency from head to display in milliseconds, over the complete pictures of all seeds.
     pub end_to_end: Budget,

@@ -8,11 +8,10 @@
 //! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
 //! removed, and only its row is computed again.
 
+use super::error::CompareError;
 use super::gallery::LastPicture;
-use super::query::{CompareError, CompareQuery};
 use super::row::ComparisonRow;
-use crate::experiment_file::plain;
-use crate::sweep::{ROWS_FILE, SweepError, inputs_of, line_of, lock, opened};
+use crate::sweep::{ROWS_FILE, SweepError, line_of, lock, opened};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
 use serde::{Deserialize, Serialize};
@@ -30,16 +29,16 @@ pub const ROWS_FOLDER: &str = "rows";
 
 /// Settings of a comparison, in the first line of its file of rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Header {
-    schema: String,
+pub(super) struct Header {
+    pub(super) schema: String,
     /// Version of the program that wrote the rows.
-    version: String,
+    pub(super) version: String,
     /// Names of all rows of the comparison.
-    rows: Vec<String>,
+    pub(super) rows: Vec<String>,
     /// Keys and options with their values, and the hashes of the files that they name.
-    settings: BTreeMap<String, String>,
+    pub(super) settings: BTreeMap<String, String>,
     /// Hash of all effective settings of the first row, also of those from presets.
-    config_hash: String,
+    pub(super) config_hash: String,
 }
 
 /// A line of the file: a row, and the data of the row that comparison.json leaves out.
@@ -71,20 +70,9 @@ pub struct CompareStore {
 }
 
 impl CompareStore {
-    /// Opens or creates the folder of finished rows. If `resume` is true, the rows are kept; else the rows of a complete
-    /// comparison are replaced.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`CompareError`] in these cases:
-    ///
-    /// - The folder cannot be read or written, or is in use.
-    /// - A line before the last is damaged.
-    /// - `resume` is true, and the folder holds rows with other settings. The error names the first key that differs.
-    /// - `resume` is false, and the folder holds rows of an interrupted comparison.
-    /// - A setting of the query is invalid.
-    pub fn open(folder: &Path, query: &CompareQuery, resume: bool) -> Result<Self, CompareError> {
-        let header = Header::of(query)?;
+    /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
+    /// describes.
+    pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, CompareError> {
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
@@ -101,7 +89,7 @@ impl CompareStore {
         }
         let mut file = opened(&path, end)?;
         if end == 0 {
-            put(&mut file, &path, &line_of(&header))?;
+            put(&mut file, &path, &line_of(header))?;
         }
         let found: Vec<ComparisonRow> = lines.into_iter().map(|line| line.row_in(folder)).collect::<Result<_, _>>()?;
         let rows = Mutex::new((file, found.len()));
@@ -148,25 +136,6 @@ impl CompareStore {
 }
 
 impl Header {
-    fn of(query: &CompareQuery) -> Result<Self, CompareError> {
-        let (plan, rows) = query.identity()?;
-        let mut settings: BTreeMap<String, String> =
-            query.shared.settings.iter().map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();
-        let mut put = |key: &str, value: String| drop(settings.insert(key.to_owned(), value));
-        // Options of the comparison are named as on the command line.
-        put("--seeds", format!("{:?}", query.seeds));
-        put("--limits", query.limits.to_string());
-        put("--confidence", query.confidence.to_string());
-        put("--until-precision", query.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
-        put("--max-seeds", query.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
-        put("pictures", query.pictures.to_string());
-        for (name, contents) in inputs_of(&query.shared) {
-            put(&format!("contents of {name}"), contents.to_string());
-        }
-        let (schema, version) = (ROWS_SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
-        Ok(Self { schema, version, rows, settings, config_hash: plan.fingerprint().to_string() })
-    }
-
     /// Returns an error that names the first difference to the header of a file.
     fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), CompareError> {
         let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };

@@ -3,7 +3,7 @@
 use super::read::wrong;
 use super::{ExperimentFile, FileError};
 use pxpl5_run::Pipeline;
-use pxpl5_scene::{Hmd, HmdConfig};
+use pxpl5_scene::{Hmd, HmdConfig, RangeError};
 use toml::Value;
 
 /// A parameter of the head-mounted display: its key, its explanation, and the functions that set and return its value.
@@ -75,12 +75,21 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
         set(&mut config, value);
         // Each number is checked alone, so that the error names the key; near and far are checked together below.
         Hmd::new(HmdConfig { far_m: config.far_m.max(config.near_m * 2.0), ..config })
-            .map_err(|error| wrong(key, setting, &error.to_string()))?;
+            .map_err(|error| wrong(key, setting, expected(&error)))?;
     }
     Hmd::new(config).map_err(|error| match file.get("hmd.far").or_else(|| file.get("hmd.near")) {
-        Some(setting) => wrong("hmd.far", setting, &error.to_string()),
+        Some(setting) => wrong("hmd.far", setting, expected(&error)),
         None => FileError::Missing { key: "hmd", how: "numbers within their ranges" },
     })
+}
+
+/// Returns the range of a number in words, with the names and units of the keys.
+fn expected(error: &RangeError) -> &'static str {
+    match error.what {
+        "eye_separation_m" => "0 to 1000, in millimetres",
+        "far_m" => "a number above hmd.near, at most 1e9",
+        _ => error.expected,
+    }
 }
 
 /// Returns the parameters that differ from those of the papers' display, with their keys.
