@@ -64,7 +64,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
         let Some(setting) = file.get(key) else { continue };
         let is_parallel = key == CONVERGENCE && setting.value.as_float() == Some(f64::INFINITY);
         let Some(value) = (if is_parallel { Some(f64::INFINITY) } else { file.number(key)? }) else { continue };
-        if pipeline.draws_faces().is_some() {
+        if pipeline.draws_faces() {
             return Err(FileError::NotApplicable {
                 place: setting.place.clone(),
                 key: key.to_owned(),
