@@ -24,7 +24,15 @@ fn query() -> CompareQuery {
         shared.set(key, value, "bench").expect("known");
     }
     shared.set("fields", 600, "bench").expect("known");
-    CompareQuery { shared, only: Vec::new(), seeds: vec![1], limits: false, pictures: false, confidence: 0.95 }
+    CompareQuery {
+        shared,
+        only: Vec::new(),
+        seeds: vec![1],
+        limits: false,
+        pictures: false,
+        confidence: 0.95,
+        until: None,
+    }
 }
 
 /// Measures all pipelines with every predictor and with each cause of error removed in turn. The runs have 10 s of head

@@ -3,14 +3,16 @@
 
 mod support;
 
+use glam::{DQuat, DVec3};
 use pxpl5::compare::{CompareQuery, edge_scene};
-use pxpl5::tracking::motion::{Motion, Pan};
+use pxpl5::tracking::Pose;
+use pxpl5::tracking::motion::{Motion, Pan, Still};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{
-    Aim, Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster,
-    Viewpoint,
+    Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan,
+    Raster, Viewpoint,
 };
 use pxpl5::{Film, FilmSurfaces};
 use std::sync::Arc;
@@ -48,8 +50,15 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         ("vdrt", "slats", "vdrt"),
     ];
     let only = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
-    let query =
-        CompareQuery { shared: file(&shared), only, seeds: vec![1], limits: false, pictures: false, confidence: 0.95 };
+    let query = CompareQuery {
+        shared: file(&shared),
+        only,
+        seeds: vec![1],
+        limits: false,
+        pictures: false,
+        confidence: 0.95,
+        until: None,
+    };
     let comparison = query.run(|_, _| ()).expect("in range");
     for (name, pipeline, raster) in rows {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];
@@ -160,4 +169,37 @@ fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_p
         // The host's message at either end and the link of 5 MB/s take less than a millisecond.
         assert!((least_ms..most_ms + 1.0).contains(&wait_ms), "{tracker}: {wait_ms}");
     }
+}
+
+/// The head stands still, 3 m to the right of the origin, and looks to the left. In the world of the scene it stays there.
+/// In the scene it is moved to the start of the scene's own motion.
+#[test]
+fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let pose = Pose { position: DVec3::new(3.0, 1.0, -2.0), orientation: DQuat::from_xyzw(0.0, half, 0.0, half) };
+    let truth = |place: HeadPlace| {
+        let head = Head::new(Arc::new(Still(pose)), TrackerConfig::ideal(), PredictorKind::None, 1).expect("in range");
+        let scene = pxpl5::scene::builtin("room").expect("built in");
+        let start = scene.motion().pose(0);
+        let jitp = Jitp::new(Viewpoint::Field, false);
+        let experiment = Experiment::new(MachineConfig::small_hmd(), jitp, scene).head(head.placed(place));
+        let outcome = experiment.fields(20).pixels(Pixels::Off).run().unwrap_or_else(|error| panic!("{error}"));
+        (outcome.head().expect("a head").truth(pxpl5::Time(1_000_000_000)), start)
+    };
+    let (in_world, start) = truth(HeadPlace::World);
+    assert!((in_world.position - pose.position).length() < 1e-12);
+    assert!(in_world.orientation.angle_between(pose.orientation) < 1e-7);
+    let (in_scene, _) = truth(HeadPlace::Scene);
+    assert!((in_scene.position - start.position).length() < 1e-12);
+    assert!(in_scene.orientation.angle_between(start.orientation.normalize()) < 1e-7);
+}
+
+#[test]
+fn a_place_is_part_of_the_settings_only_if_it_is_not_the_usual_one() {
+    let usual = [("pipeline", "slats"), ("scene", "room"), ("head.motion", "pan:40")];
+    let hash = |more: &[(&str, &str)]| plan(&[&usual[..], more].concat()).fingerprint();
+    assert_eq!(hash(&[("head.place", "scene")]), hash(&[]));
+    assert_ne!(hash(&[("head.place", "world")]), hash(&[]));
+    let error = file(&[&usual[..], &[("head.place", "earth")]].concat()).resolve().expect_err("no place").to_string();
+    assert!(error.contains("head.place") && error.contains("world"), "{error}");
 }

@@ -48,6 +48,9 @@ fn impossible_displays_are_refused_by_name() {
         ("hmd.eye_distance=-1", "hmd.eye_distance"),
         ("hmd.far=0.01", "hmd.far"),
         ("hmd.near=0", "hmd.near"),
+        ("hmd.convergence=0.01", "hmd.convergence"),
+        ("hmd.convergence=-inf", "hmd.convergence"),
+        ("hmd.lens=0.2", "hmd.lens: expected 0: the model shows flat pictures without a lens"),
     ] {
         let mut file = ExperimentFile::default();
         for text in ["pipeline=slats", "scene=full-screen:2", setting] {
@@ -62,4 +65,18 @@ fn impossible_displays_are_refused_by_name() {
     }
     let error = file.resolve().expect_err("faces").to_string();
     assert!(error.contains("arp-full"), "{error}");
+}
+
+#[test]
+fn axes_that_meet_are_in_the_report_and_infinity_is_the_default() {
+    let usual = report(&[]);
+    let parallel = report(&["hmd.convergence=inf", "hmd.lens=0"]);
+    assert_eq!((&parallel.config_hash, &parallel.trace_hash), (&usual.config_hash, &usual.trace_hash));
+    let converging = report(&["hmd.convergence=0.8"]);
+    assert_eq!(converging.hmd.convergence_m, Some(0.8));
+    assert_ne!(converging.config_hash, usual.config_hash);
+    assert_eq!(
+        converging.hmd.to_string(),
+        "Display: 60 degrees wide, eyes 64 mm apart with axes that meet at 0.8 m, near 0.05 m, far 50 m, no lens (hmd.*)"
+    );
 }

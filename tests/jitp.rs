@@ -419,7 +419,15 @@ fn comparison(fields: u64) -> CompareQuery {
         shared.set(key, value, "test").expect("known");
     }
     shared.set("fields", i64::try_from(fields).expect("few"), "test").expect("known");
-    CompareQuery { shared, only: Vec::new(), seeds: vec![1], limits: false, pictures: false, confidence: 0.95 }
+    CompareQuery {
+        shared,
+        only: Vec::new(),
+        seeds: vec![1],
+        limits: false,
+        pictures: false,
+        confidence: 0.95,
+        until: None,
+    }
 }
 
 #[test]

@@ -27,6 +27,9 @@ class Head:
     aim: str = "middle"
     #: The raster before the eyes: ``plain``, or ``vdrt``, shifted by what the pose was wrong.
     raster: str = "plain"
+    #: Meaning of the poses of the motion. ``scene``: the motion begins where the scene's own motion begins.
+    #: ``world``: the poses are metres in the scene's coordinates.
+    place: str = "scene"
     #: Metres from the eye at which errors are judged; None where the scene's content lies.
     judge_at: float | None = None
     #: Numbers of trackers and predictors by path, such as ``optical.latency``: see :func:`tracking_parameters`.
@@ -42,6 +45,8 @@ class Head:
             "head.aim": self.aim,
             "head.raster": self.raster,
         }
+        if self.place != "scene":
+            keys["head.place"] = self.place
         if self.judge_at is not None:
             keys["head.judge_at"] = float(self.judge_at)
         keys.update({path if path.startswith("tracking.") else f"tracking.{path}": n for path, n in self.tracking.items()})

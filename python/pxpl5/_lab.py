@@ -156,7 +156,8 @@ class Comparison:
     def table(self) -> Table:
         """A row for each pipeline: latency, head to light, rate, errors in pixels and most triangles; nested names with points.
 
-        Means over seeds have ``.mean``, and ``.low`` and ``.high`` of their 95 % intervals (Student's t).
+        Means over seeds have ``.mean``, and ``.low``, ``.high`` and ``.method`` of their 95 % intervals. ``due`` and ``not_shown``
+        count the pictures, ``error.n`` the evaluated pixels.
         """
         left_out = ("end_to_end", "causes", "predictors", "picture", "errors", "display_counters")
         rows = [{key: value for key, value in row.items() if key not in left_out} for row in self.data["pipelines"]]
@@ -171,13 +172,17 @@ class Comparison:
     def _repr_html_(self) -> str:
         from ._html import table
 
-        head = ["pipeline", "latency, ms", "head to light, ms", "error, px", "triangles"]
+        head = ["pipeline", "latency, ms", "head to light, ms", "figure 19, ms", "due", "not shown", "error, px", "pixels", "triangles"]
         rows = [
             [
                 row["pipeline"],
                 row["latency_ms"]["mean"],
                 row["head_to_light_ms"]["mean"],
+                row["tracking_and_rendering_ms"]["mean"],
+                row["due"],
+                row["not_shown"],
                 row["error"]["mean_px"]["mean"],
+                row["error"]["n"],
                 row.get("triangles_possible"),
             ]
             for row in self.data["pipelines"]
@@ -190,7 +195,7 @@ def compare(
     *,
     machine: str | Machine = "small-hmd",
     head: str | Head = "synthetic",
-    fields: int = 300,
+    fields: int | None = None,
     only: Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
@@ -200,12 +205,12 @@ def compare(
 ) -> Comparison:
     """Every pipeline with the same settings, a run for each seed: errors in pixels by cause, latencies, and, on demand, limits.
 
-    ``only`` names the rows that are run; all where it is empty. A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
+    ``fields`` is the length of each run: None for the length of a recording, else 300. ``only`` names the rows that are run; all where it is empty. A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
 
     Raises :class:`SettingError` for a setting that is wrong, or a run too short to judge anything.
     """
     made = Made()
-    made.put_all(None, scene, machine, head, {"fields": fields, **keys, **(settings or {})})
+    made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
     if made.motion is not None:
         from ._errors import SettingError
 

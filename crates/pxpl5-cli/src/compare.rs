@@ -2,22 +2,25 @@
 
 mod drawings;
 mod gallery;
+mod progress;
 mod table;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::Work;
-use crate::numbers::{confidence, whole};
+use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal;
-use pxpl5::compare::{CONFIDENCE, CompareQuery, ComparisonRow, LEAST_SEEDS, edge_pictures, usual_rows};
+use progress::CompareProgress;
+use pxpl5::compare::{
+    CONFIDENCE, CompareQuery, CompareStore, LEAST_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength,
+    UntilPrecise, edge_pictures, usual_rows,
+};
 use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// Arguments of `pxpl5 compare`.
 #[derive(clap::Args, Debug)]
@@ -28,9 +31,11 @@ use std::time::Instant;
   pxpl5 compare --fields 60 --seeds 1
   pxpl5 compare --all --limits --confidence 0.99
   pxpl5 compare --only slats,vdrt,jitp-scanline-racing --head pan:200
+  pxpl5 compare --out out/compare --resume                          after an interruption
+  pxpl5 compare --until-precision 10% --max-seeds 40
 
 Every pipeline has the same settings and one run for each seed. With the head `synthetic`, each seed gives another motion. The pipelines
-have the values of their papers. The command `pxpl5 run --pipeline NAME` runs one pipeline alone, with its own keys and pictures.")]
+have the values of their papers. A recording sets the length of the runs. The command `pxpl5 run --pipeline NAME` runs one pipeline alone, with its own keys and pictures.")]
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
@@ -44,6 +49,13 @@ pub(crate) struct CompareArgs {
     /// The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
+    /// Add seeds to each row until the interval of its mean error, from end to end, is narrower than this. The width is
+    /// a share of the mean (10%) or pixels (0.2px). Not for recordings, because more seeds do not move them.
+    #[arg(long, value_name = "WIDTH")]
+    until_precision: Option<Precision>,
+    /// Maximum number of seeds of a row with --until-precision.
+    #[arg(long, value_name = "N", default_value_t = MAX_SEEDS as u64, value_parser = whole::<u64>(2, 1_000), requires = "until_precision")]
+    max_seeds: u64,
     /// Also search for the largest number of triangles that each pipeline can draw in time; the search takes longer
     /// than all runs.
     #[arg(long, conflicts_with = "no_limits")]
@@ -56,9 +68,12 @@ pub(crate) struct CompareArgs {
     confidence: f64,
     /// Write into this folder: comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline,
     /// and the pictures of a vertical edge. Charts show the error over time, its distribution, and the error against
-    /// latency and against prediction interval.
+    /// latency and against prediction interval. Each row is in DIR/rows/rows.jsonl as soon as its runs have ended.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Keep the finished rows of an interrupted comparison with the same settings in --out, and run only the others.
+    #[arg(long, requires = "out")]
+    resume: bool,
     /// Speed of the head's turn in the pictures of a vertical edge, degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
@@ -75,9 +90,6 @@ pub(crate) struct CompareArgs {
 /// Default settings of a comparison, as keys and values of an experiment file.
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
-
-/// Default number of display fields in each run: five seconds.
-const FIELDS: i64 = 300;
 
 /// Maximum speed of the head's rotation (pan) for the pictures of a vertical edge, in degrees per second.
 const FASTEST: f64 = 10_000.0;
@@ -100,27 +112,17 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
     let only = if args.all || !args.only.is_empty() { args.only } else { usual_rows(shared.registry()) };
     let (limits, pictures) = (args.limits, folder.is_some());
-    let query = CompareQuery { shared, only, seeds, limits, pictures, confidence: args.confidence };
+    let until = args.until_precision.map(|width| UntilPrecise { width, max_seeds: args.max_seeds as usize });
+    let mut query = CompareQuery { shared, only, seeds, limits, pictures, confidence: args.confidence, until };
+    set_length(&mut query, args.quiet)?;
     admit(args.budget, &query, args.quiet)?;
-    let bar = terminal::progress(0, "runs", args.quiet);
-    let rows = AtomicU64::new(0);
-    let begun = Instant::now();
-    let all = query.plans()?.len() as u64;
-    let finished = |done, of| {
-        bar.set_length(of);
-        bar.set_position(done);
-    };
-    let comparison = query.run_with(finished, |row| {
-        let done = rows.fetch_add(1, Ordering::Relaxed) + 1;
-        let line = ended(row, [done, all], begun.elapsed().as_secs_f64());
-        // A terminal has the bar; a log has a line for each row.
-        if bar.is_hidden() && !args.quiet {
-            terminal::print_error(&line);
-        } else {
-            bar.suspend(|| terminal::print_error(if args.quiet { "" } else { &line }));
-        }
-    });
-    bar.finish_and_clear();
+    // The store keeps finished rows, so that an interruption loses only the rows in progress.
+    let rows_of = |out: &PathBuf| query.open_store(&out.join(ROWS_FOLDER), args.resume);
+    let store = args.out.as_ref().map(rows_of).transpose()?;
+    let found = store.as_ref().map_or(0, CompareStore::found);
+    let progress = CompareProgress::new(found, query.rows()?.len(), args.quiet);
+    let comparison = query.run_into(store.as_ref(), |done, of| progress.finished(done, of), |row| progress.ended(row));
+    progress.clear();
     let comparison = comparison?;
     // Write all files, then publish the folder in one step.
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
@@ -140,25 +142,15 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the progress line to print when all runs of a row have ended.
-fn ended(row: &ComparisonRow, [done, all]: [u64; 2], seconds: f64) -> String {
-    let left = seconds / done as f64 * all.saturating_sub(done) as f64;
-    let error = row.error.mean_px.mean;
-    let error = if error.is_finite() { format!("error {error:.2} px") } else { "no error".to_owned() };
-    let shown = row
-        .not_shown
-        .filter(|missed| *missed > 0)
-        .map_or_else(String::new, |missed| format!(", {missed} of {} pictures not shown", row.due.unwrap_or_default()));
-    format!("pxpl5: row {done} of {all}, {}: {error}{shown}; about {left:.0} s to go\n", row.pipeline)
-}
-
 fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), CliError> {
+    // Seeds may be added up to the maximum, so the budget must cover the maximum.
+    let seeds = query.until.map_or(0, |until| until.max_seeds).max(query.seeds.len());
     let mut runs = Vec::new();
     for (row, plan) in query.plans()?.into_iter().enumerate() {
         // All rows have the same scene, so its warnings are printed once.
         let scene = scenes::load(&plan, quiet || row > 0)?;
         let work = Work::of(&plan, &scene, true);
-        runs.extend(query.seeds.iter().map(|_| work));
+        runs.extend(std::iter::repeat_n(work, seeds));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
@@ -175,10 +167,16 @@ fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
             file.set(key, value, "compare")?;
         }
     }
-    if file.place_of("fields").is_none() {
-        file.set("fields", FIELDS, "compare")?;
-    }
     Ok(file)
+}
+
+/// Sets the length of the runs. Prints a warning if a recording is shorter than the settings ask.
+fn set_length(query: &mut CompareQuery, quiet: bool) -> Result<(), CliError> {
+    if let Some(RecordedLength { fields, asked: Some(asked) }) = query.set_length()? {
+        let [asked, fields] = [asked, fields].map(|fields| count_of(fields, "field"));
+        terminal::warn(&[format!("the recording of the head ends before {asked}: each run has {fields}")], quiet);
+    }
+    Ok(())
 }
 
 fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Result<(), CliError> {

@@ -10,7 +10,7 @@ use crate::table::{Comparison, table};
 use crate::terminal::print;
 use crate::version::{VERSION, commit};
 use clap::Args;
-use pxpl5::{ExperimentFile, Outcome, Plan, Report, Results};
+use pxpl5::{ExperimentFile, Measure, Outcome, Plan, Report, Results};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -109,6 +109,16 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
         if !told.contains(&&report.pipeline) {
             let _ = writeln!(text, "Latency of {}: {}.", report.pipeline, report.latency_ms.definition);
             told.push(&report.pipeline);
+        }
+    }
+    // A published quantity can differ from the latency above it, which is that of the whole picture.
+    let mut defined = Vec::new();
+    for quantity in runs.iter().filter_map(|run| Some(&run.comparison.as_ref()?.quantity)) {
+        if let Ok(measure) = Measure::named(quantity)
+            && !defined.contains(&measure)
+        {
+            let _ = writeln!(text, "Published {quantity}: {}.", measure.definition());
+            defined.push(measure);
         }
     }
     let _ = writeln!(

@@ -83,6 +83,7 @@ impl From<CompareError> for CliError {
     fn from(error: CompareError) -> Self {
         match error {
             CompareError::Settings(error) => error.into(),
+            CompareError::Files(error) => error.into(),
             _ => Self::usage(error),
         }
     }

@@ -170,14 +170,15 @@ const CHART_MM: f64 = 165.0;
 
 /// Returns a chart of the errors of all rows, in percent of the published values. The intervals are relative too.
 fn chart(rows: &[FigureRow]) -> Chart {
-    let series = |name: &str, look, is_free: bool| {
+    let series = |name: &str, is_free: bool| {
         // Each row keeps the position of its number, so that the two series share the axis.
         let chosen = rows.iter().enumerate().filter(|(_, row)| (row.standing == "free") == is_free);
         let points = chosen.map(|(place, row)| ChartPoint {
             at: (place as f64, row.error_percent),
             interval: row.interval.map_or((f64::NAN, f64::NAN), |ends| relative(ends, row.published)),
+            is_hollow: !is_free,
         });
-        ChartSeries { name: name.to_owned(), points: points.collect(), look }
+        ChartSeries { name: name.to_owned(), points: points.collect(), look: SeriesStyle::Points }
     };
     Chart {
         axes: ChartAxes {
@@ -187,10 +188,7 @@ fn chart(rows: &[FigureRow]) -> Chart {
         },
         across: AxisScale::Names(rows.iter().map(|row| row.id.to_owned()).collect()),
         up: AxisScale::Fitted,
-        series: vec![
-            series("free check", SeriesStyle::Points, true),
-            series("a parameter or rule was chosen for the figure", SeriesStyle::HollowPoints, false),
-        ],
+        series: vec![series("free check", true), series("a parameter or rule was chosen for the figure", false)],
         size: ChartSize::Column { width_mm: CHART_MM },
     }
 }

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 ///
 /// The command writes three files: the figure, FIG.csv and FIG.json. For every point, FIG.csv has the mean, the
 /// standard deviation, n and the interval of the mean. The interval is Student's t; for positive values it is computed
-/// from their logarithms. FIG.json states the results and options from which the figure was made.
+/// from their logarithms. Rows of a comparison keep the interval and the method of that comparison. FIG.json states the results and options from which the figure was made.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
@@ -30,7 +30,8 @@ use std::path::{Path, PathBuf};
   pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.svg
 
 An axis that varies must be named by --x, --by or --band; otherwise, the command fails. A row without a result does not count as 0. The
-column `missing` counts such rows, and a point without any number is not drawn.")]
+column `missing` counts such rows, and a point without any number is not drawn. A hollow mark stands for runs with pictures that were
+due and not shown: its mean is of the others. FIG.csv has the sums of `due`, `not_shown` and `samples` (evaluated pixels).")]
 pub(crate) struct PlotArgs {
     /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
@@ -211,7 +212,7 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
         "commit": commit(),
         "results": args.results.display().to_string(),
         "x": args.x, "y": args.y, "by": args.by, "band": args.band, "where": only,
-        "interval": "95 % of the mean, Student's t",
+        "interval": interval(args, results.kind),
         "about": results.about,
     });
     let origin = serde_json::to_string_pretty(&origin).map_err(CliError::failure)? + "\n";
@@ -222,11 +223,22 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     folder.commit()
 }
 
+/// Returns the confidence and the method of the intervals in words.
+fn interval(args: &PlotArgs, kind: RowsKind) -> String {
+    match kind {
+        RowsKind::Sweep => {
+            format!("{} % of the mean, Student's t, of the logarithm if all are positive", args.confidence * 100.0)
+        }
+        RowsKind::Comparison => "as in the comparison: see `confidence` and each row's `method`".to_owned(),
+    }
+}
+
 /// Returns the groups of rows as CSV: columns with names first, then numbers. A missing number is an empty cell.
 fn csv(question: &Question, groups: &[Group]) -> String {
-    let columns = ["mean", "sd", "n", "low", "high", "missing"].map(str::to_owned);
+    let columns = ["mean", "sd", "n", "low", "high", "missing", "due", "not_shown", "samples"].map(str::to_owned);
     let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);
     let number = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+    let count = |value: Option<u64>| value.map_or_else(String::new, |count| count.to_string());
     let rows = groups.iter().map(|group| {
         let numbers = [
             number(group.mean),
@@ -235,6 +247,9 @@ fn csv(question: &Question, groups: &[Group]) -> String {
             number(group.interval.0),
             number(group.interval.1),
             group.missing.to_string(),
+            count(group.counts.due),
+            count(group.counts.not_shown),
+            count(group.counts.samples),
         ];
         group.by.iter().cloned().chain([question::text(&group.x)]).chain(numbers).collect::<Vec<_>>()
     });

@@ -49,8 +49,8 @@ pub(crate) struct RigArgs {
 const FIELDS_OF_PASS: u64 = 60;
 
 /// Settings that the rig determines itself. The user must not set them.
-const KEYS_SET_BY_RIG: [&str; 8] =
-    ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
+const KEYS_SET_BY_RIG: [&str; 9] =
+    ["scene", "triangles", "head.motion", "head.place", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
 /// Runs the command `pxpl5 rig`.
 ///

@@ -1,6 +1,7 @@
 //! Reader of the result rows that `pxpl5 sweep` and `pxpl5 compare` write into a folder.
 
 use crate::error::CliError;
+use pxpl5::compare::ROWS_FOLDER;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
 use pxpl5_sim::parameters::text_of;
@@ -53,7 +54,18 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
             return read(text).map(Some).map_err(problem);
         }
     }
-    Ok(None)
+    unfinished(folder)
+}
+
+/// Reads the finished rows of a comparison that was interrupted or is still running.
+fn unfinished(folder: &Path) -> Result<Option<ResultRows>, CliError> {
+    let path = folder.join(ROWS_FOLDER).join(ROWS_FILE);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
+    let bytes = fs::read(&path).map_err(|error| problem(error.to_string()))?;
+    stored_comparison(text_of(&bytes).map_err(problem)?).map(Some).map_err(problem)
 }
 
 /// Returns the folder of a results file, or the path itself if it is a folder.
@@ -99,6 +111,21 @@ fn of_point(mut point: Map<String, Value>) -> Row {
         }
     }
     row
+}
+
+/// Returns the header and the rows of an unfinished comparison. An incomplete last line is left out.
+fn stored_comparison(text: &str) -> Result<ResultRows, String> {
+    let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+    let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
+    expect_schema(&about, "pxpl5-comparison-rows")?;
+    let row = |(n, line): (usize, &str)| {
+        let mut line = parsed(line, &format!("line {}", n + 2))?;
+        let mut row = Row::new();
+        flatten("", line.remove("row").unwrap_or_default(), &mut row);
+        Ok::<_, String>(row)
+    };
+    let rows = lines.enumerate().map(row).collect::<Result<_, _>>()?;
+    Ok(ResultRows { kind: RowsKind::Comparison, rows, about })
 }
 
 fn comparison(text: &str) -> Result<ResultRows, String> {

@@ -170,15 +170,7 @@ fn text((plan, results, report): (&Plan, &Results, &Report), explain: bool, writ
         );
     }
     if report.arp.is_none() {
-        let hmd = &report.hmd;
-        let _ = writeln!(
-            text,
-            "Display: {} degrees wide, eyes {} mm apart with parallel axes, near {} m, far {} m, no lens (hmd.*).",
-            hmd.horizontal_fov_deg,
-            hmd.eye_separation_m * 1e3,
-            hmd.near_m,
-            hmd.far_m
-        );
+        let _ = writeln!(text, "{}.", report.hmd);
     }
     if let Some(utilisation) = &report.utilisation {
         let _ = writeln!(text, "\n{utilisation}.");

@@ -60,6 +60,10 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
+    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the poses
+    /// are metres in the scene's coordinates); default scene.
+    #[arg(long)]
+    place: Option<String>,
     /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or
     /// retrace; default middle.
     #[arg(long)]
@@ -114,6 +118,7 @@ impl SettingArgs {
             ("head.tracker", "--tracker", self.tracker),
             ("head.predict", "--predict", self.predict),
             ("head.aim", "--aim", self.aim),
+            ("head.place", "--place", self.place),
             (display_key(self.display.as_deref()), "--display", self.display),
             ("head.raster", "--raster", self.raster),
             ("level", "--level", self.level),

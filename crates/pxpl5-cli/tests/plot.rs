@@ -38,7 +38,7 @@ fn means_deviations_and_intervals_are_those_of_the_seeds() {
     assert_eq!(folder.names(), ["fig.csv", "fig.json", "fig.svg", "rows.jsonl"]);
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     let mut lines = table.lines();
-    assert_eq!(lines.next(), Some("copy,n,mean,sd,n,low,high,missing"));
+    assert_eq!(lines.next(), Some("copy,n,mean,sd,n,low,high,missing,due,not_shown,samples"));
     for (line, (copy, n, mean)) in lines.by_ref().zip([
         ("whole", "1", 12.0),
         ("whole", "2", 22.0),
@@ -74,7 +74,7 @@ fn a_result_that_was_not_evaluated_is_not_zero() {
     assert!(run.status.success(), "{}", err(&run));
     assert!(err(&run).contains("8 rows have no number"), "{}", err(&run));
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
-    assert!(table.ends_with("split,4,,,0,,,3\n"), "{table}");
+    assert!(table.ends_with("split,4,,,0,,,3,,,\n"), "{table}");
     assert!(table.contains("whole,1,1.5,"), "{table}");
     // A curve without a point has no name in the legend.
     sweep(&folder, |copy, _, seed| if copy == "split" { Value::Null } else { json!(seed) });
@@ -162,6 +162,49 @@ fn a_comparison_is_a_point_for_each_pipeline() {
     let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
     assert_eq!(
         table,
-        "pipeline,head_to_light_ms.mean,mean,sd,n,low,high,missing\nslats,50.0,8,,5,7,9,0\njitp-field,40.0,7,,5,6,8,0\n"
+        "pipeline,head_to_light_ms.mean,mean,sd,n,low,high,missing,due,not_shown,samples\n\
+         slats,50.0,8,,5,7,9,0,,,\njitp-field,40.0,7,,5,6,8,0,,,\n"
     );
+}
+
+/// Returns the outlines of hollow and of filled circles in a figure.
+fn circles(svg: &str, is_hollow: bool) -> usize {
+    svg.lines().filter(|line| line.contains("<circle") && line.contains("fill=\"none\"") == is_hollow).count()
+}
+
+#[test]
+fn a_point_of_a_sweep_with_pictures_not_shown_is_hollow_and_its_counts_are_in_the_table() {
+    let folder = Folder::new("plot-counts");
+    let axes = json!([{"paths": ["n"], "steps": [[1], [2]]}, {"paths": ["seed"], "steps": [[1], [2]]}]);
+    let mut text = json!({"schema": "pxpl5-sweep/1", "points": 4, "title": "t", "axes": axes}).to_string() + "\n";
+    for (n, seed, missed) in [(1, 1, 0), (1, 2, 0), (2, 1, 0), (2, 2, 7)] {
+        let measured = json!({"error_px.mean": 3.0 + f64::from(seed), "pictures_due": 20, "missed_retraces": missed, "error_px.n": 500});
+        let parameters = json!({"n": n, "seed": seed});
+        let row = json!({"point": 0, "status": "done", "parameters": parameters, "measured": measured, "error": null});
+        text += &(row.to_string() + "\n");
+    }
+    folder.file("rows.jsonl", text);
+    let run = folder.run(&["plot", ".", "--x", "n", "--y", "error_px.mean", "--band", "seed", "--out", "fig.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
+    let ends: Vec<&str> = table.lines().map(|line| line.splitn(7, ',').last().unwrap_or_default()).collect();
+    assert_eq!(ends, ["missing,due,not_shown,samples", "0,40,0,1000", "0,40,7,1000"], "{table}");
+    let svg = std::fs::read_to_string(folder.0.join("fig.svg")).expect("written");
+    assert_eq!(circles(&svg, true), 1, "{svg}");
+}
+
+#[test]
+fn finished_rows_of_an_unfinished_comparison_can_be_drawn() {
+    let folder = Folder::new("plot-unfinished");
+    let row = |name: &str, px: f64, missed: u64| {
+        let error = json!({"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}, "n": 100});
+        json!({"row": {"pipeline": name, "due": 9, "not_shown": missed, "error": error}, "by_field": [], "picture": null})
+    };
+    let header = json!({"schema": "pxpl5-comparison-rows/1", "rows": ["slats", "vdrt", "ideal"]});
+    std::fs::create_dir(folder.0.join("rows")).expect("made");
+    folder.file("rows/rows.jsonl", format!("{header}\n{}\n{}\n{{\"row\": ", row("slats", 8.0, 0), row("vdrt", 7.0, 2)));
+    let run = folder.run(&["plot", ".", "--x", "pipeline", "--y", "error.mean_px.mean", "--out", "fig.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
+    assert!(table.contains("slats,slats,8,,5,7,9,0,9,0,100\nvdrt,vdrt,7,,5,6,8,0,9,2,100\n"), "{table}");
 }

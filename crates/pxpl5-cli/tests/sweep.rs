@@ -351,3 +351,25 @@ fn a_header_of_more_points_than_a_sweep_can_have_is_damage() {
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("a/rows.jsonl, line 1: "), "{}", err(&output));
 }
+
+/// Two fields of Slats need 5 renderers; the analytic level and a run without a head evaluate no pixel.
+#[test]
+fn every_row_carries_the_pictures_due_and_not_shown_and_the_evaluated_pixels() {
+    let folder = folder("counts");
+    folder.file(
+        "s.toml",
+        "pipeline = \"slats\"\nscene = \"full-screen:2\"\nfields = 30\nmeasure = [\"latency_ms.mean\"]\nhead.motion = \"pan:40\"\n\
+         head.predict = \"none\"\n[sweep.grid]\nmachine.n_gps = [1, 2]\n",
+    );
+    succeeds(&folder.run(&["sweep", "s.toml", "--out", "o"]));
+    let csv = read(&folder, "o/results.csv");
+    let mut lines = csv.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number =
+            |name: &str| cells[names.iter().position(|it| *it == name).expect(name)].parse::<f64>().expect(name);
+        assert!(number("pictures_due") > 0.0 && number("error_px.n") > 0.0, "{line}");
+        assert_eq!(number("missed_retraces"), 0.0, "{line}");
+    }
+}

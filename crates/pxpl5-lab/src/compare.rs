@@ -5,21 +5,34 @@
 //! head to display, the prediction interval, and the error in pixels by cause. It also has the number of triangles that
 //! the pipeline could draw.
 
+mod bootstrap;
 mod contender;
+mod error;
 mod gallery;
+mod interval;
+mod length;
 mod pictures;
+mod precision;
 mod predictors;
 mod query;
+mod resume;
 mod row;
+mod store;
 mod trial;
 
 pub use crate::head_names::{
     MOTIONS, MotionError, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by,
     walk,
 };
+pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::usual_rows;
+pub use error::CompareError;
 pub use gallery::LastPicture;
+pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
+pub use length::RecordedLength;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
+pub use precision::{MAX_SEEDS, Precision, PrecisionError, UntilPrecise};
 pub use predictors::{PredictorError, Predictors, predictors};
-pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
-pub use row::{CONFIDENCE, CauseShare, ComparisonRow, ErrorSpread, MeanInterval, PredictorMean};
+pub use query::{CompareQuery, Comparison, LEAST_SEEDS};
+pub use row::{CauseShare, ComparisonRow, ErrorSpread, PredictorMean};
+pub use store::{CompareStore, ROWS_FOLDER, ROWS_SCHEMA};

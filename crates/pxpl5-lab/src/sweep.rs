@@ -16,6 +16,8 @@
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
 //! - Two processes never write into one folder. The second process is refused.
+//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, whatever the file measures.
+//!   Without these counts, a mean over few pictures looks like a mean over all.
 //!
 //! # Not modelled
 //!
@@ -40,6 +42,9 @@ mod space;
 mod store;
 mod table;
 
+pub(crate) use inputs::inputs_of;
+pub(crate) use store::{line_of, lock, opened};
+
 pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
@@ -49,7 +54,8 @@ pub use shard::Shard;
 pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
-use crate::experiment_file::{ExperimentFile, FileError};
+use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use pxpl5_measure::Measure;
 use scenes::Scenes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -99,6 +105,14 @@ impl Sweep {
     pub const fn space(&self) -> &SweepSpace {
         &self.space
     }
+}
+
+/// Returns the quantities of a row: those of the plan, then the counts without which no mean can be compared
+/// ([`Measure::counts`]).
+fn measures(plan: &Plan) -> Vec<Measure> {
+    let mut all = plan.measure.clone();
+    all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));
+    all
 }
 
 #[cfg(test)]

@@ -1,29 +1,36 @@
 //! Latency from the measurement of the head's pose until the picture is lit, by stage.
 
-use pxpl5_run::{FinalResults, PictureTimes, SampledPose, Samples};
+use pxpl5_run::{FinalResults, Outcome, PictureTimes, SampledPose, Samples, number_or_nan};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 
 /// Mean time of each stage from the measurement of the head's pose until the picture is lit, in milliseconds.
 ///
 /// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
     /// From the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
+    #[serde(deserialize_with = "number_or_nan")]
     pub tracking_ms: f64,
     /// From the arrival of the tracker's report until the pipeline uses it.
+    #[serde(deserialize_with = "number_or_nan")]
     pub waiting_ms: f64,
     /// From the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
+    #[serde(deserialize_with = "number_or_nan")]
     pub sending_ms: f64,
     /// From the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER, COPY.
+    #[serde(deserialize_with = "number_or_nan")]
     pub drawing_ms: f64,
     /// From the end of COPY until the picture is shown: wait for the retrace or for the display's beam.
     ///
     /// Negative if the last pixels arrive after the first pixels are shown.
+    #[serde(deserialize_with = "number_or_nan")]
     pub showing_ms: f64,
     /// From the time the picture is shown until the display's beam reaches the middle of the picture.
+    #[serde(deserialize_with = "number_or_nan")]
     pub scanning_ms: f64,
     /// From the measurement of the pose until the middle of the picture is lit.
+    #[serde(deserialize_with = "number_or_nan")]
     pub total_ms: f64,
     /// Number of pictures over which the means are computed.
     pub n: u64,
@@ -56,6 +63,20 @@ impl Budget {
             n,
         }
     }
+}
+
+/// Returns the sum of two means that the papers add, in milliseconds. `None` if no picture was measured.
+///
+/// The first is the time from the measurement of the pose until its report reaches the host. The second is the time from
+/// the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
+/// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, and the scan to the middle of the picture.
+#[must_use]
+pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
+    let Budget { tracking_ms, drawing_ms, showing_ms, .. } = Budget::of(outcome);
+    let of_eyes = outcome.summary().eye_latency_ms();
+    // Eyes that share one TRANSFORM have no latency of their own.
+    let rendering_ms = if of_eyes.n == 0 { drawing_ms + showing_ms } else { of_eyes.mean };
+    Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
 }
 
 /// Sums of the stages over complete pictures in the result window that have a measured pose, in milliseconds.

@@ -1,23 +1,25 @@
 //! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
 
 use crate::percentiles::Percentiles;
-use pxpl5_run::{Raster, Reprojection};
+use pxpl5_run::{Raster, Reprojection, number_or_nan};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Errors of one field (one display period).
-#[derive(Clone, Copy, PartialEq, Serialize)]
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FieldMisregistration {
     /// Number of the display period in which the errors were evaluated.
     pub field: PeriodNumber,
     /// Start of the period in simulated time, in seconds.
     pub time_s: f64,
     /// Mean error over the pixels of the grid.
+    #[serde(deserialize_with = "number_or_nan")]
     pub mean_px: f64,
     /// Error of the pixel in the middle, in pixels.
+    #[serde(deserialize_with = "number_or_nan")]
     pub centre_px: f64,
 }
 

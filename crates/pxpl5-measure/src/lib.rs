@@ -51,7 +51,7 @@ mod turn_sum;
 mod turned;
 mod utilisation;
 
-pub use budget::Budget;
+pub use budget::{Budget, tracking_and_rendering_ms};
 pub use causes::{ErrorCauses, ErrorPart};
 pub use critical_path::{CriticalPath, PICTURES_FOLLOWED, PathPart};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};

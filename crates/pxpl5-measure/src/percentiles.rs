@@ -1,21 +1,27 @@
 //! Mean and percentiles of a set of numbers.
 
-use serde::Serialize;
+use pxpl5_run::number_or_nan;
+use serde::{Deserialize, Serialize};
 
 /// Count, mean, percentiles and maximum of a set of numbers. All but the count are NaN (null in JSON) for an empty set.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
     /// Number of values.
     pub n: u64,
     /// Arithmetic mean of the values.
+    #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Median: the smallest value that is at least as large as half of the values.
+    #[serde(deserialize_with = "number_or_nan")]
     pub p50: f64,
     /// 90th percentile: the smallest value that is at least as large as 90 % of the values.
+    #[serde(deserialize_with = "number_or_nan")]
     pub p90: f64,
     /// 99th percentile: the smallest value that is at least as large as 99 % of the values.
+    #[serde(deserialize_with = "number_or_nan")]
     pub p99: f64,
     /// Largest value.
+    #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
 }
 

@@ -1,6 +1,7 @@
 //! Quantities of a run by name, for tables, CSV files and sweeps.
 
 use crate::Report;
+use crate::budget::tracking_and_rendering_ms;
 use crate::resource::Resource;
 use crate::summary::summary;
 use pxpl5_gp::Stage;
@@ -50,14 +51,14 @@ const LATENCY: &str =
 
 const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures in the window; none for Slats";
 
-const EYE_RETRACES: &str = "number of retraces from the start of an eye's TRANSFORM to the swap of its frame, the retrace of the swap included";
+const EYE_RETRACES: &str = "number of retraces from the start of an eye's TRANSFORM to the swap, the retrace of the swap included, over both eyes of all complete pictures in the window; none for Slats";
 
 const ERROR_PX: &str = "distance between a pixel and the right place of its content when the pixel lights, over a grid of pixels and all fields of the window; only pixels of pictures that were complete in time; only with a head.motion";
 
 const PATH: &str = "share of the latency that waits for this resource, 0 to 1, over the last complete pictures of the window; the shares of all resources add up to 1";
 
 /// All quantities by name. Quantities that need a simulated run have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 55] = [
+pub static QUANTITIES: [Quantity; 57] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().told().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().told().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -116,6 +117,14 @@ pub static QUANTITIES: [Quantity; 55] = [
         "from the head's pose to the light of the picture's middle; mean; only with a head.motion",
         |_, r| Some(r.head.as_ref()?.end_to_end.total_ms),
     ),
+    of_run(
+        "tracking_and_rendering_ms",
+        "the sum of two means, as in figure 19: from the pose to the arrival of its report, and from the start of an eye's TRANSFORM to the swap; only with a head.motion",
+        |o, r| r.head.as_ref().and_then(|_| tracking_and_rendering_ms(o)),
+    ),
+    of_run("error_px.n", "evaluated pixels: those of error_px; only with a head.motion", |_, r| {
+        Some(r.head.as_ref()?.error.judged as f64)
+    }),
     of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
     of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),
     of_run("error_px.p90", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p90)),
@@ -200,6 +209,23 @@ impl Measure {
         let names = ["latency_fields.", "latency_ms.", "updates_hz", "missed_retraces"];
         QUANTITIES.iter().filter(|q| names.iter().any(|name| q.name.starts_with(name))).map(Self).collect()
     }
+
+    /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.
+    /// Without them, a mean over few pictures looks like a mean over all.
+    #[must_use]
+    pub fn counts() -> Vec<Self> {
+        let is_count = |q: &&Quantity| [Self::DUE, Self::NOT_SHOWN, Self::EVALUATED].contains(&q.name);
+        QUANTITIES.iter().filter(is_count).map(Self).collect()
+    }
+
+    /// Name of the number of pictures that were due.
+    pub const DUE: &'static str = "pictures_due";
+
+    /// Name of the number of due pictures that were not shown.
+    pub const NOT_SHOWN: &'static str = "missed_retraces";
+
+    /// Name of the number of evaluated pixels.
+    pub const EVALUATED: &'static str = "error_px.n";
 
     /// Returns the name with the unit.
     #[must_use]

@@ -74,11 +74,17 @@ fn every_quantity_is_the_number_of_that_name_in_the_report() {
         ("late_regions", report.late_regions as u64),
         ("pictures", report.pictures as u64),
         ("events", report.events),
+        ("error_px.n", head.error.judged),
     ];
     for (name, expected) in counted {
         assert_eq!(value(&results, name), Some(expected as f64), "{name}");
     }
+    // Both eyes are shown in the same pictures, so the mean over both is the mean of their means.
+    let to_swap = report.latency_by_eye_ms.iter().filter(|latency| latency.until == "swap" && latency.of != "pair");
+    let of_eyes: Vec<f64> = to_swap.map(|latency| latency.statistics.statistics.mean).collect();
+    assert_eq!(of_eyes.len(), 2);
     let measured = [
+        ("tracking_and_rendering_ms", head.end_to_end.tracking_ms + (of_eyes[0] + of_eyes[1]) / 2.0),
         ("latency_ms.mean", report.latency_ms.statistics.mean),
         ("latency_ms.sd", report.latency_ms.statistics.sd),
         ("latency_ms.min", report.latency_ms.statistics.min),

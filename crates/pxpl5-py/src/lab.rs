@@ -90,14 +90,16 @@ pub(crate) fn compare<'py>(
     limits: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let query = CompareQuery {
+    let mut query = CompareQuery {
         shared: settings.file.clone(),
         only,
         seeds,
         limits,
         pictures: false,
         confidence: pxpl5::compare::CONFIDENCE,
+        until: None,
     };
+    query.set_length().map_err(wrong_setting)?;
     let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }

@@ -3,7 +3,7 @@
 use crate::head_views::{Follower, HeadViews};
 use crate::report_schedule::Coming;
 use pxpl5_sim::Time;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
@@ -15,7 +15,7 @@ use tracking::tracker::{TrackerConfig, TrackerModel};
 /// A cause of misregistration, the offset between displayed and correct positions.
 ///
 /// Each cause can be removed from the reports and poses of a run that has ended. The machine's times stay unchanged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host knows

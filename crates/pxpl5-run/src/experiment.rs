@@ -353,8 +353,11 @@ impl Experiment {
             hash.setting("on_demand", true);
         }
         if self.hmd != HmdConfig::unc() {
-            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, .. } = self.hmd;
+            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, convergence_m, .. } = self.hmd;
             hash.setting("hmd", format!("{eye_separation_m} {horizontal_fov_deg} {near_m} {far_m}"));
+            if let Some(metres) = convergence_m {
+                hash.setting("hmd.convergence", metres);
+            }
         }
         hash
     }

@@ -36,6 +36,31 @@ enum Numbers {
 /// parameters.
 const TUNING: &str = "for its interval and motion, version 1";
 
+/// Meaning of the positions and orientations of a head motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HeadPlace {
+    /// The motion counts from the start of the scene's own motion: the first pose of the motion is placed there, and the
+    /// others relative to the first.
+    #[default]
+    Scene,
+    /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
+    World,
+}
+
+impl HeadPlace {
+    /// All meanings with their names in experiment files.
+    pub const NAMES: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
+
+    /// Returns the name in experiment files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::World => "world",
+        }
+    }
+}
+
 /// A head with its motion, tracker and predictor, and with the raster correction of its display.
 #[derive(Clone)]
 pub struct Head {
@@ -47,6 +72,7 @@ pub struct Head {
     pub(crate) seed: u64,
     raster: Raster,
     aim: Aim,
+    place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
 }
@@ -61,6 +87,7 @@ impl fmt::Debug for Head {
             .field("seed", &self.seed)
             .field("raster", &self.raster)
             .field("aim", &self.aim)
+            .field("place", &self.place)
             .finish_non_exhaustive()
     }
 }
@@ -70,6 +97,9 @@ const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
     /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker.
+    ///
+    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is.
+    /// [`Head::placed`] with [`HeadPlace::World`] takes its poses as coordinates of the scene.
     ///
     /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
     /// See [`tune`](tracking::predict::tune).
@@ -110,6 +140,7 @@ impl Head {
             seed,
             raster: Raster::Plain,
             aim: Aim::Middle,
+            place: HeadPlace::Scene,
             reports: None,
             unsupported_parameters: Vec::new(),
         })
@@ -156,6 +187,20 @@ impl Head {
     #[must_use]
     pub const fn judge_at_m(&self) -> Option<f64> {
         self.judge_at_m
+    }
+
+    /// Sets the meaning of the motion's poses: relative to the start of the scene's own motion, or in the world of the
+    /// scene.
+    #[must_use]
+    pub const fn placed(mut self, place: HeadPlace) -> Self {
+        self.place = place;
+        self
+    }
+
+    /// Returns the meaning of the motion's poses.
+    #[must_use]
+    pub const fn place(&self) -> HeadPlace {
+        self.place
     }
 
     /// Sets the raster correction of the head-mounted display.
@@ -243,6 +288,9 @@ impl Head {
                     .for_each(|training| hash.setting("predictor.turns_tuned_on", format_args!("{training:?}")));
             }
             Numbers::Given | Numbers::ToBeTuned => {}
+        }
+        if self.place != HeadPlace::Scene {
+            hash.setting("place", self.place.name());
         }
         // Settings that affect evaluation and display, then the given reports.
         if let Some(metres) = self.judge_at_m {

@@ -1,7 +1,7 @@
 //! Records of the poses that a pipeline requested, and of the tracker reports that each pose used.
 
 use crate::display_list::view;
-use crate::head::Head;
+use crate::head::{Head, HeadPlace};
 use crate::rehearsal::SeenTimes;
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
@@ -115,7 +115,7 @@ impl fmt::Debug for HeadViews {
 
 impl HeadViews {
     /// Creates the views of a head for reports that arrive before `until`. The tracked motion begins where the scene's
-    /// own motion begins.
+    /// own motion begins, or has the coordinates of the scene ([`HeadPlace`]).
     pub(crate) fn new(
         head: Arc<Head>,
         scene: &Arc<Scene>,
@@ -123,9 +123,12 @@ impl HeadViews {
         until: Time,
         rehearsal: Option<SeenTimes>,
     ) -> Self {
-        let of_scene = scene.motion().pose(0);
-        let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
+        let begin = match head.place() {
+            HeadPlace::Scene => scene.motion().pose(0),
+            HeadPlace::World => start,
+        };
+        let base = Pose { orientation: begin.orientation.normalize(), ..begin };
         let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
         let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
         Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, rehearsal, base, start, state }
@@ -218,7 +221,7 @@ impl HeadViews {
     }
 
     /// Converts a pose from the tracker's coordinates to scene coordinates. The start of the tracked motion maps to the
-    /// start of the scene's own motion.
+    /// start of the scene's own motion, or to itself ([`HeadPlace`]).
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);

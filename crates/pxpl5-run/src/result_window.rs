@@ -11,7 +11,7 @@
 
 use crate::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Number of display periods at the start of a run that are not evaluated (assumed). In these periods, the first views
 /// are still being drawn, and the first pictures were requested too late.
@@ -24,7 +24,7 @@ pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates c
     from empty queues; the first four pictures have no latency and no error";
 
 /// Periods of the first display over which all results of a run are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResultWindow {
     /// First period of the window.
     pub first_period: PeriodNumber,

@@ -1,24 +1,37 @@
 //! Mean and spread of a list of numbers.
 
 use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Statistics of a list of numbers: count, mean, sample standard deviation, minimum and maximum.
 ///
 /// For an empty list, all values but the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
 /// null.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {
     /// Count of the numbers.
     pub n: u64,
     /// Sum of the numbers divided by their count.
+    #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Sample standard deviation, with n - 1 as divisor. NaN for fewer than two numbers.
+    #[serde(deserialize_with = "number_or_nan")]
     pub sd: f64,
     /// Smallest of the numbers.
+    #[serde(deserialize_with = "number_or_nan")]
     pub min: f64,
     /// Largest of the numbers.
+    #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
+}
+
+/// Deserializes a number that JSON shows as null if it is NaN. For the attribute `deserialize_with` of serde.
+///
+/// # Errors
+///
+/// Fails if the value is neither a number nor null.
+pub fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 /// Slightly more than one picosecond, in milliseconds. Times are whole picoseconds, so after rounding, equal times

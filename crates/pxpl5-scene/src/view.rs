@@ -7,6 +7,7 @@ use tracking::Pose;
 use crate::error::{RangeError, require};
 use crate::scene::Frame;
 use crate::trig;
+use std::fmt;
 
 /// The eye for which a picture is drawn. In pairs of pictures, the left eye comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -62,6 +63,14 @@ pub struct HmdConfig {
     pub near_m: f64,
     /// Distance from the eye to the far plane, metres. Nothing beyond it is drawn.
     pub far_m: f64,
+    /// Distance from the head at which the optical axes of both eyes meet, metres. The axes are turned towards each
+    /// other, and each picture is centred on its axis. `None` for parallel axes.
+    #[serde(default)]
+    pub convergence_m: Option<f64>,
+    /// Radial distortion of the lens between eye and picture. The only possible value is 0: the model draws flat
+    /// pictures and shows them without a lens.
+    #[serde(default)]
+    pub lens_distortion: f64,
 }
 
 impl HmdConfig {
@@ -73,6 +82,8 @@ impl HmdConfig {
     /// | field of view | 60 degrees | published in JITP's example, assumed here; 30 to 100 |
     /// | eye separation | 64 mm | assumed, mean of adults; 54 to 74 |
     /// | near, far | 0.05 m, 50 m | assumed; with 24 bits of depth a step at 1 m is 1.2 um |
+    /// | convergence | parallel axes | assumed; the papers print no angle between the axes |
+    /// | lens | none | assumed; the papers' pictures are not distorted before display |
     #[must_use]
     pub fn unc() -> Self {
         Self {
@@ -82,12 +93,30 @@ impl HmdConfig {
             height_px: 480,
             near_m: 0.05,
             far_m: 50.0,
+            convergence_m: None,
+            lens_distortion: 0.0,
         }
     }
 }
 
-/// A head-mounted display with checked numbers. The optical axes of both eyes are parallel, and each picture is centred
-/// on its axis.
+/// Prints the numbers in one line, with the keys of an experiment file.
+impl fmt::Display for HmdConfig {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { horizontal_fov_deg, eye_separation_m, near_m, far_m, convergence_m, lens_distortion, .. } = self;
+        // Rounding hides the error of the conversion to millimetres.
+        let eyes_mm = (eye_separation_m * 1e6).round() / 1e3;
+        write!(f, "Display: {horizontal_fov_deg} degrees wide, eyes {eyes_mm} mm apart with ")?;
+        match convergence_m {
+            Some(metres) => write!(f, "axes that meet at {metres} m")?,
+            None => write!(f, "parallel axes")?,
+        }
+        write!(f, ", near {near_m} m, far {far_m} m, ")?;
+        if *lens_distortion == 0.0 { write!(f, "no lens (hmd.*)") } else { write!(f, "lens {lens_distortion} (hmd.*)") }
+    }
+}
+
+/// A head-mounted display with checked numbers. Each picture is centred on the optical axis of its eye. The axes are
+/// parallel, or meet ahead of the head.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hmd {
     config: HmdConfig,
@@ -112,6 +141,16 @@ impl Hmd {
         require((1e-6..=1e6).contains(&c.near_m), "near_m", "1e-6 to 1e6", c.near_m)?;
         let above_near = c.far_m > c.near_m && c.far_m <= 1e9;
         require(above_near, "far_m", "above near_m, at most 1e9", c.far_m)?;
+        if let Some(metres) = c.convergence_m {
+            require(
+                (0.1..=1e6).contains(&metres),
+                "convergence_m",
+                "0.1 to 1e6, or infinity for parallel axes",
+                metres,
+            )?;
+        }
+        let lens = "0: the model shows flat pictures without a lens";
+        require(c.lens_distortion == 0.0, "lens_distortion", lens, c.lens_distortion)?;
         let projection = projection(c);
         Ok(Self { config, projection })
     }
@@ -141,7 +180,8 @@ impl Hmd {
     }
 
     /// Returns the disparity, in pixels, of a point `depth_m` metres ahead: eye separation x focal length / depth. In
-    /// the left picture the point is this far to the right of its position in the right picture.
+    /// the left picture the point is this far to the right of its position in the right picture. The formula is for
+    /// parallel axes.
     #[must_use]
     pub fn disparity_px(&self, depth_m: f64) -> f64 {
         self.config.eye_separation_m * self.focal_length_px() / depth_m
@@ -154,8 +194,12 @@ impl Hmd {
             EyePoint::Right => half,
             EyePoint::Centre => 0.0,
         };
-        // The optical axes are parallel, so each eye is only shifted.
-        let head_to_eye = DMat4::from_translation(DVec3::new(-right_of_head, 0.0, 0.0));
+        let shift = DMat4::from_translation(DVec3::new(-right_of_head, 0.0, 0.0));
+        // The middle of the picture shows the point where the axes meet.
+        let head_to_eye = match self.config.convergence_m {
+            Some(metres) => turn_towards(-right_of_head, metres) * shift,
+            None => shift,
+        };
         View {
             eye,
             world_to_eye: (head_to_eye * world_to_head(head)).as_mat4(),
@@ -163,6 +207,19 @@ impl Hmd {
             projection: self.projection,
         }
     }
+}
+
+/// Returns the rotation that takes a point `right` metres to the right and `ahead` metres ahead to the axis of view.
+/// Square roots have the same bits on every host.
+fn turn_towards(right: f64, ahead: f64) -> DMat4 {
+    let distance = (right * right + ahead * ahead).sqrt();
+    let (sin, cos) = (right / distance, ahead / distance);
+    DMat4::from_cols(
+        DVec4::new(cos, 0.0, -sin, 0.0),
+        DVec4::new(0.0, 1.0, 0.0, 0.0),
+        DVec4::new(sin, 0.0, cos, 0.0),
+        DVec4::new(0.0, 0.0, 0.0, 1.0),
+    )
 }
 
 /// Returns the tangent of half the horizontal angle of view.

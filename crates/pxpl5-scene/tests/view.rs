@@ -119,3 +119,20 @@ fn unknown_keys_of_a_configuration_are_errors() {
     let wrong = text.replace("near_m", "nearest");
     assert!(serde_json::from_str::<HmdConfig>(&wrong).is_err());
 }
+
+/// The middle of the picture is pixel 320. Half the eye distance is 32 mm, and cot 30 degrees is 1.732: at 2 m the point
+/// is 8.87 pixels off the middle with parallel axes.
+#[test]
+fn eyes_that_converge_see_the_point_where_their_axes_meet_in_the_middle() {
+    let head = turned_left();
+    let meeting = Vec3::new(-1.0, 2.0, 3.0);
+    let places = |convergence_m| {
+        let hmd = Hmd::new(HmdConfig { convergence_m, ..HmdConfig::unc() }).expect("in range");
+        hmd.stereo(&head).map(|view| pixel_x(&view, meeting))
+    };
+    let [left, right] = places(Some(2.0));
+    assert!((left - 320.0).abs() < 1e-3 && (right - 320.0).abs() < 1e-3, "{left} {right}");
+    let [left, right] = places(None);
+    let off = 0.032 / 2.0 * 320.0 * 3f64.sqrt();
+    assert!((left - 320.0 - off).abs() < 1e-3 && (right - 320.0 + off).abs() < 1e-3, "{left} {right}");
+}

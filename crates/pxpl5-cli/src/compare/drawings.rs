@@ -47,7 +47,7 @@ fn over_latency(comparison: &Comparison) -> String {
         comparison,
         "Error over latency",
         "mean from head to light, ms",
-        "mean error, px (interval of the seeds' means; hollow: pictures not shown)",
+        "mean error, px (with interval; hollow: pictures not shown)",
     );
     points(comparison, &axes, |row| row.head_to_light_ms.mean)
 }
@@ -57,7 +57,7 @@ fn over_prediction(comparison: &Comparison) -> String {
         comparison,
         "Error over prediction interval",
         "mean prediction interval, ms",
-        "mean error, px (interval of the seeds' means; hollow: pictures not shown)",
+        "mean error, px (with interval; hollow: pictures not shown)",
     );
     points(comparison, &axes, |row| row.prediction_interval_ms.mean)
 }
@@ -85,7 +85,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 /// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 24] = [
+const COLUMNS: [Column; 28] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms.mean", |row| number(row.latency_ms.mean)),
@@ -94,6 +94,7 @@ const COLUMNS: [Column; 24] = [
     ("head_to_light_ms.sd", |row| number(row.head_to_light_ms.sd)),
     ("turn_to_light_ms.mean", |row| number(row.turn_to_light_ms.mean)),
     ("turn_to_light_ms.sd", |row| number(row.turn_to_light_ms.sd)),
+    ("tracking_and_rendering_ms.mean", |row| number(row.tracking_and_rendering_ms.mean)),
     ("prediction_interval_ms.mean", |row| number(row.prediction_interval_ms.mean)),
     ("prediction_interval_ms.sd", |row| number(row.prediction_interval_ms.sd)),
     ("updates_hz.mean", |row| number(row.updates_hz.mean)),
@@ -104,10 +105,13 @@ const COLUMNS: [Column; 24] = [
     ("error.mean_px.low", |row| number(row.error.mean_px.low)),
     ("error.mean_px.high", |row| number(row.error.mean_px.high)),
     ("error.mean_px.n", |row| row.error.mean_px.n.to_string()),
+    ("error.mean_px.method", |row| written(serde_json::to_value(row.error.mean_px.method))),
+    ("error.bootstrap.block_fields", |row| count(row.error.bootstrap.map(|size| size.block_fields))),
     ("error.pixels.p50", |row| number(row.error.pixels.p50)),
     ("error.pixels.p90", |row| number(row.error.pixels.p90)),
     ("error.pixels.p99", |row| number(row.error.pixels.p99)),
     ("error.n", |row| row.error.n.to_string()),
+    ("seeds", |row| row.seeds.to_string()),
     ("triangles_possible", |row| row.triangles_possible.map_or_else(String::new, |n| n.to_string())),
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];

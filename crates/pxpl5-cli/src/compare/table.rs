@@ -2,14 +2,15 @@
 
 use crate::numbers::count_of;
 use pxpl5::Cause;
-use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
+use pxpl5::compare::{Comparison, ComparisonRow, IntervalMethod, MeanInterval};
 use std::fmt::Write as _;
 
 /// Name of each column, its unit, and its width in characters.
-const COLUMNS: [(&str, &str, usize); 14] = [
+const COLUMNS: [(&str, &str, usize); 15] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
     ("turn", "ms", 7),
+    ("figure 19", "ms", 10),
     ("predicts", "ms", 9),
     ("updates", "Hz", 8),
     ("not shown", "", 12),
@@ -32,23 +33,63 @@ pub(super) fn text(comparison: &Comparison) -> String {
     let _ = writeln!(text, "\n{}", header());
     comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
     text.push_str(&best(comparison));
+    text.push_str(&intervals(comparison));
+    text.push_str(&imprecise(comparison));
     text.push_str(&causes(comparison));
     text.push_str(
         "\nto light: time from the head's pose until the middle of the picture is lit; turn: the same for an orientation that a display with\n\
-         faces reads at scan-out; predicts: time from the newest measurement to the instant for which a picture is drawn; updates: new\n\
-         pictures per second (frameless rendering: passes over all blocks of the screen, docs/results.md); interval: range of the mean, from\n\
-         the seeds; n: evaluated pixels; best with: the predictor with the least error for the first seed; - : no sample was evaluated;\n\
-         ! : some due pictures were not shown, so the error covers only the others; + : evaluated from a later field on than the other\n\
-         rows. Rows with a mark are never the best.\n",
+         faces reads at scan-out; figure 19: sum of two means as in the papers, from the pose to its report and from an eye's TRANSFORM to\n\
+         the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: time from the newest measurement to the instant\n\
+         for which a picture is drawn; updates: new pictures per second (frameless rendering: passes over all blocks of the screen,\n\
+         docs/results.md); interval: range of the mean; n: evaluated pixels; best with: the predictor with the least error for the first\n\
+         seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
+         a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }
 
+/// Returns a sentence for each method of the intervals, with the rows that have it.
+fn intervals(comparison: &Comparison) -> String {
+    let confidence = comparison.confidence * 100.0;
+    let mut text = String::new();
+    for method in IntervalMethod::ALL {
+        let rows = comparison.pipelines.iter().filter(|row| row.was_evaluated() && row.error.mean_px.method == method);
+        let names: Vec<String> = rows.map(with_blocks).collect();
+        if !names.is_empty() {
+            let _ = writeln!(text, "Intervals of {confidence:.0} %, {}: {}.", method.words(), names.join(", "));
+        }
+    }
+    text
+}
+
+/// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
+fn with_blocks(row: &ComparisonRow) -> String {
+    let blocks =
+        row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
+    format!("{}{}", row.pipeline, blocks.unwrap_or_default())
+}
+
+/// Returns sentences about the seeds of the rows, if the comparison added seeds for a precision.
+fn imprecise(comparison: &Comparison) -> String {
+    let Some(width) = &comparison.until_precision else { return String::new() };
+    let rows = |precise: bool| {
+        let rows = comparison.pipelines.iter().filter(move |row| row.is_precise == Some(precise));
+        rows.map(|row| format!("{} ({})", row.pipeline, count_of(row.seeds, "seed"))).collect::<Vec<_>>().join(", ")
+    };
+    let mut text = String::new();
+    for (precise, is) in [(true, "narrower"), (false, "not narrower")] {
+        if !rows(precise).is_empty() {
+            let _ = writeln!(text, "Intervals {is} than {width}: {}.", rows(precise));
+        }
+    }
+    text
+}
+
 fn heading(comparison: &Comparison) -> String {
-    let Comparison { scene, triangles, machine, boards, fields, seeds, head, .. } = comparison;
+    let Comparison { scene, triangles, machine, boards, fields, seeds, head, hmd, .. } = comparison;
     let head: Vec<String> = head.iter().map(|(key, value)| format!("{key} {value}")).collect();
     format!(
-        "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n",
+        "{scene} ({}) on {machine} ({}, {}); {}; {}, {}\n{hmd}\n",
         count_of(*triangles, "triangle"),
         count_of(boards[0], "GP"),
         count_of(boards[1], "renderer"),
@@ -98,6 +139,7 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
         number(row.turn_to_light_ms.mean, 2),
+        number(row.tracking_and_rendering_ms.mean, 2),
         number(row.prediction_interval_ms.mean, 2),
         number(row.updates_hz.mean, 2),
         missed,

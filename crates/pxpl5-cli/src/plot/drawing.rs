@@ -51,10 +51,14 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
         None => group.x.as_f64().unwrap_or(f64::NAN),
     };
     let own = groups.iter().filter(|group| group.by == by && group.n > 0);
-    let mut points: Vec<ChartPoint> =
-        own.map(|group| ChartPoint { at: (across(group), group.mean), interval: group.interval }).collect();
+    let mut points: Vec<ChartPoint> = own.map(|group| point(group, across(group))).collect();
     points.sort_by(|one, other| one.at.0.total_cmp(&other.at.0));
     let is_curve = names.is_none() && points.len() > 1;
     let look = if is_curve { SeriesStyle::Band } else { SeriesStyle::Points };
     ChartSeries { name: by.join(", "), points, look }
+}
+
+/// Returns the point of a group. It is hollow if pictures were not shown, because its mean is then of the others.
+fn point(group: &Group, across: f64) -> ChartPoint {
+    ChartPoint { at: (across, group.mean), interval: group.interval, is_hollow: group.counts.has_missing_pictures() }
 }

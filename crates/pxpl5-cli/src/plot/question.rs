@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
-use pxpl5::Statistics;
 use pxpl5::compare::MeanInterval;
+use pxpl5::{Measure, Statistics};
 use pxpl5_sim::parameters::nearest;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,6 +42,37 @@ pub(super) struct Group {
     pub(super) sd: f64,
     /// Confidence interval of the mean. NaN in the same cases as `sd`.
     pub(super) interval: (f64, f64),
+    pub(super) counts: Counts,
+}
+
+/// Sums of the counts over all rows of a group. A count is `None` if no row has it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counts {
+    /// Number of pictures that were due.
+    pub(super) due: Option<u64>,
+    /// Number of due pictures that were not shown.
+    pub(super) not_shown: Option<u64>,
+    /// Number of evaluated pixels.
+    pub(super) samples: Option<u64>,
+}
+
+impl Counts {
+    fn of(kind: RowsKind, rows: &[&Row]) -> Self {
+        let names = match kind {
+            RowsKind::Sweep => [Measure::DUE, Measure::NOT_SHOWN, Measure::EVALUATED],
+            RowsKind::Comparison => ["due", "not_shown", "error.n"],
+        };
+        let [due, not_shown, samples] = names.map(|name| {
+            let mut known = rows.iter().filter_map(|row| value(row, name)?.as_f64()).peekable();
+            known.peek().is_some().then(|| known.sum::<f64>() as u64)
+        });
+        Self { due, not_shown, samples }
+    }
+
+    /// Returns true if pictures that were due were not shown.
+    pub(super) fn has_missing_pictures(&self) -> bool {
+        self.not_shown.is_some_and(|missed| missed > 0)
+    }
 }
 
 impl Question {
@@ -94,23 +125,26 @@ impl Question {
         let missing = rows.len() - numbers.len();
         // A row of a comparison already is a mean over seeds.
         if results.kind == RowsKind::Comparison {
-            return Ok(self.of_row(by, x, rows[0], missing));
+            return Ok(self.of_row(by, x, rows, missing));
         }
         self.check_others(results, rows)?;
         let of_all = MeanInterval::of(&numbers, self.confidence);
         let sd = if numbers.len() < 2 { f64::NAN } else { Statistics::of(numbers.iter().copied()).sd };
         let interval = (of_all.low, of_all.high);
-        Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval })
+        let counts = Counts::of(results.kind, rows);
+        Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval, counts })
     }
 
     /// Returns the group for one row of a comparison. Such a row already is a mean over seeds with an interval.
-    fn of_row(&self, by: Vec<String>, x: Value, row: &Row, missing: usize) -> Group {
+    fn of_row(&self, by: Vec<String>, x: Value, rows: &[&Row], missing: usize) -> Group {
+        let row = rows[0];
         let number = |name: &str| value(row, name).and_then(Value::as_f64);
         let mean = number(&self.y).unwrap_or(f64::NAN);
         let beside = |name: &str| self.y.strip_suffix(".mean").and_then(|path| number(&format!("{path}.{name}")));
         let interval = (beside("low").unwrap_or(f64::NAN), beside("high").unwrap_or(f64::NAN));
         let n = beside("n").map_or(usize::from(missing == 0), |n| n as usize);
-        Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval }
+        let counts = Counts::of(RowsKind::Comparison, rows);
+        Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval, counts }
     }
 
     /// Returns an error if a swept setting varies within a group, unless the plot takes the mean over this setting.

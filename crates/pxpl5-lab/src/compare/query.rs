@@ -1,21 +1,23 @@
 //! Definition and execution of a comparison of pipelines.
 
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
+use super::error::CompareError;
+use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
-use super::row::ComparisonRow;
+use super::row::{ComparisonRow, Sampling};
+use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
-use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
+use crate::experiment_file::{ExperimentFile, HeadChoice, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use pxpl5_measure::Showing;
 use pxpl5_run::{Goal, Pixels, WARM_UP_PERIODS};
-use pxpl5_scene::Scene;
+use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use thiserror::Error;
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
 /// all observations of a run in memory to evaluate its errors in several ways.
@@ -44,42 +46,8 @@ pub struct CompareQuery {
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
     pub confidence: f64,
-}
-
-/// Error that prevents a comparison.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// A setting is invalid.
-    #[error(transparent)]
-    Settings(#[from] FileError),
-    /// The number of fields is too small or too large.
-    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
-    Fields {
-        /// Minimum and maximum number of fields.
-        expected: (u64, u64),
-        /// Number of fields in the settings.
-        found: u64,
-    },
-    /// The query has no seeds.
-    #[error("expected at least one seed, found none")]
-    NoSeed,
-    /// The registry has no pipeline that is to be compared.
-    #[error("expected a registry with a pipeline that is compared, found none")]
-    NoPipeline,
-    /// A row in the query does not exist.
-    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
-    Row {
-        /// Names of all rows, separated by commas.
-        expected: String,
-        /// Name of the row in the query.
-        found: String,
-        /// Name of the existing row that is most similar to the name in the query.
-        nearest: String,
-    },
-    /// The settings have no head motion, so there is no error to compare.
-    #[error("expected a head.motion, found none: without a head there is no error to compare")]
-    NoHead,
+    /// Goal for which seeds are added to a row. `None` runs [`CompareQuery::seeds`] only.
+    pub until: Option<UntilPrecise>,
 }
 
 /// Result of a comparison: the shared settings, and one row for each method.
@@ -97,17 +65,45 @@ pub struct Comparison {
     pub triangles: usize,
     /// Keys of the head's settings with their values.
     pub head: Vec<(String, String)>,
+    /// Numbers of the head-mounted display that the viewer wears.
+    pub hmd: HmdConfig,
     /// Number of fields simulated for each seed.
     pub fields: u64,
-    /// Seeds of the runs. Every row ran once for each seed.
+    /// Seeds of the runs. Every row ran at least once for each seed ([`ComparisonRow::seeds`]).
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
+    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if it did not ask.
+    pub until_precision: Option<String>,
+    /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
+    pub max_seeds: Option<usize>,
     /// First display period in which rows are evaluated, exact to within one interval between due pictures. Rows that
     /// start up later are evaluated from a later period on ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
     /// Results of the compared pipelines, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
+}
+
+/// Count of finished runs. The number of all runs grows when seeds are added.
+struct Progress<'a> {
+    done: AtomicU64,
+    all: AtomicU64,
+    finished: &'a (dyn Fn(u64, u64) + Sync),
+}
+
+impl<'a> Progress<'a> {
+    fn new(all: u64, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
+        Self { done: AtomicU64::new(0), all: AtomicU64::new(all), finished }
+    }
+
+    fn add(&self, runs: u64) {
+        self.all.fetch_add(runs, Ordering::Relaxed);
+    }
+
+    fn step(&self) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        (self.finished)(done, self.all.load(Ordering::Relaxed));
+    }
 }
 
 impl CompareQuery {
@@ -135,41 +131,77 @@ impl CompareQuery {
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, CompareError> {
+        self.run_into(None, finished, ended)
+    }
+
+    /// Runs every row that the store does not hold yet. A row is stored as soon as all of its runs have ended. `ended`
+    /// is called with each new row after the row is stored.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`], and if a row cannot be stored.
+    pub fn run_into(
+        &self,
+        store: Option<&CompareStore>,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, CompareError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
         let scene = any.load_scene()?;
-        let searches = if self.limits { compared_pipelines.len() } else { 0 };
-        let all = (compared_pipelines.len() * self.seeds.len() + searches) as u64;
-        let done = AtomicU64::new(0);
-        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
+        let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
+        let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
+        let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
         let pipelines = parallel::map(&compared_pipelines, |contender| {
-            let trials = parallel::map(&self.seeds, |seed| {
-                let trial = self.trial(contender, *seed, &scene);
-                step();
-                trial
-            });
-            let row = self.row(contender, &trials, &scene)?;
-            if self.limits {
-                step();
+            if let Some(row) = held(contender) {
+                return Ok(row);
             }
+            let row = self.row(contender, &scene, &progress)?;
+            if self.limits {
+                progress.step();
+            }
+            let row = match store {
+                Some(store) => store.append(row)?,
+                None => row,
+            };
             ended(&row);
             Ok::<_, CompareError>(row)
         });
         Ok(Comparison {
-            schema: "pxpl5-comparison/2",
+            schema: "pxpl5-comparison/3",
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
             scene: scene.name().to_owned(),
             triangles: scene.triangles().len(),
             head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
+            hmd: *any.hmd.config(),
             fields: any.fields,
             seeds: self.seeds.clone(),
             confidence: self.confidence,
+            until_precision: self.until.map(|until| until.width.to_string()),
+            max_seeds: self.until.map(|until| until.max_seeds),
             evaluated_from: common_window_from(any.fields),
             pipelines: pipelines.into_iter().collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Returns the names of the rows that the query runs.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run`].
+    pub fn rows(&self) -> Result<Vec<String>, CompareError> {
+        Ok(self.identity()?.1)
+    }
+
+    /// Returns the plan of the first row with the first seed, and the names of all rows.
+    pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), CompareError> {
+        let rows = self.compared_pipelines()?;
+        let plan = self.any_plan(&rows)?;
+        Ok((plan, rows.into_iter().map(|row| row.name).collect()))
     }
 
     /// Returns the plan of each row with the first seed, from which the cost can be estimated. Rows that cannot run are
@@ -198,13 +230,25 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns the plan of the first row with the first seed, to check the shared settings.
-    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
+    /// Returns the plan of the first row with the first seed, without a check of its length.
+    pub(super) fn first_plan(&self) -> Result<Plan, CompareError> {
+        self.plan_of_first(&self.compared_pipelines()?)
+    }
+
+    fn plan_of_first(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
         let first = compared_pipelines.first().ok_or(CompareError::NoPipeline)?;
-        let plan = first.plan(&self.shared, seed)?;
+        Ok(first.plan(&self.shared, seed)?)
+    }
+
+    /// Returns the plan of the first row with the first seed, to check the shared settings.
+    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
+        let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
+        }
+        if self.until.is_some() && plan.head.as_ref().is_some_and(HeadChoice::is_recording) {
+            return Err(CompareError::OneMotion);
         }
         // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
@@ -212,6 +256,27 @@ impl CompareQuery {
             return Err(CompareError::Fields { expected, found: plan.fields });
         }
         Ok(plan)
+    }
+
+    /// Returns seeds that follow the seeds of the query and those that were added before.
+    fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
+        let greatest = self.seeds.iter().copied().max().unwrap_or_default();
+        let added = (ran - self.seeds.len()) as u64;
+        (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
+    }
+
+    fn trials(
+        &self,
+        contender: &ComparedPipeline,
+        seeds: &[u64],
+        scene: &Arc<Scene>,
+        progress: &Progress<'_>,
+    ) -> Vec<Result<Trial, String>> {
+        parallel::map(seeds, |seed| {
+            let trial = self.trial(contender, *seed, scene);
+            progress.step();
+            trial
+        })
     }
 
     fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
@@ -222,16 +287,35 @@ impl CompareQuery {
         contender.trial(&plan, scene, pixels)
     }
 
+    /// Runs a row: once for each seed, then with more seeds while the interval of its mean is wider than the query
+    /// allows.
     fn row(
         &self,
         contender: &ComparedPipeline,
-        trials: &[Result<Trial, String>],
         scene: &Arc<Scene>,
+        progress: &Progress<'_>,
     ) -> Result<ComparisonRow, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
-        // Failed runs are left out, and their first error is reported below.
-        let ran: Vec<&Trial> = trials.iter().flatten().collect();
-        let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, self.confidence);
+        let is_one_motion = plan.head.as_ref().is_some_and(HeadChoice::is_recording);
+        let mut trials = self.trials(contender, &self.seeds, scene, progress);
+        let (mut row, shown) = loop {
+            // Failed runs are left out, and their first error is reported below.
+            let ran: Vec<&Trial> = trials.iter().flatten().collect();
+            let sampling = Sampling { seeds: trials.len(), is_one_motion, confidence: self.confidence };
+            let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran, sampling);
+            row.is_precise = self.until.map(|until| until.is_reached(&row.error.mean_px));
+            // More seeds do not help a row with failed runs or without an evaluation.
+            let helps = ran.len() == trials.len() && row.was_evaluated();
+            let until = self.until.filter(|_| helps);
+            let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
+            if more == 0 {
+                let shown: usize = ran.iter().map(|trial| trial.shown).sum();
+                break (row, shown);
+            }
+            progress.add(more as u64);
+            let seeds = self.seeds_after(trials.len(), more);
+            trials.extend(self.trials(contender, &seeds, scene, progress));
+        };
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
@@ -245,7 +329,6 @@ impl CompareQuery {
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.
-        let shown: usize = ran.iter().map(|trial| trial.shown).sum();
         row.failure = error.or_else(|| (shown == 0 && !row.was_evaluated()).then(|| nothing_shown(&row, plan.fields)));
         Ok(row)
     }

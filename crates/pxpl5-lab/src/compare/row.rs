@@ -1,66 +1,24 @@
 //! A row of a comparison: the results of one method, combined from the runs of all seeds.
 
+use super::bootstrap::{BlockBootstrap, BootstrapSize};
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
+use super::interval::{IntervalMethod, MeanInterval};
 use super::trial::Trial;
-use distrs::StudentsT;
 use pxpl5_measure::{Budget, FieldMisregistration, Percentiles, Showing};
-use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics};
-use serde::Serialize;
+use pxpl5_run::{Cause, Pipeline, ResultWindow, Statistics, number_or_nan};
+use pxpl5_wire::PeriodNumber;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use tracking::predict::PredictorKind;
 
-/// A mean over seeds with its confidence interval (Student's t over the means of the seeds).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct MeanInterval {
-    /// Mean of the seeds' means. NaN if there are no seeds.
-    pub mean: f64,
-    /// Lower end of the confidence interval. NaN for fewer than two seeds.
-    pub low: f64,
-    /// Upper end of the confidence interval. NaN for fewer than two seeds.
-    pub high: f64,
-    /// Number of seeds.
-    pub n: usize,
-}
-
-/// Default confidence of an interval, as a probability.
-pub const CONFIDENCE: f64 = 0.95;
-
-impl MeanInterval {
-    /// Computes the mean and its interval from one positive number for each seed, at a confidence between 0 and 1.
-    ///
-    /// The interval is computed for the logarithm (delta method), so that its lower end stays positive. It reaches from
-    /// `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is not positive, the result is the
-    /// symmetric interval of [`MeanInterval::of_signed`].
-    #[must_use]
-    pub fn of(values: &[f64], confidence: f64) -> Self {
-        let symmetric = Self::of_signed(values, confidence);
-        if !values.iter().all(|value| *value > 0.0) {
-            return symmetric;
-        }
-        let factor = ((symmetric.high - symmetric.mean) / symmetric.mean).exp();
-        Self { low: symmetric.mean / factor, high: symmetric.mean * factor, ..symmetric }
-    }
-
-    /// Computes the mean and its symmetric interval from one number for each seed. The numbers can be negative.
-    #[must_use]
-    pub fn of_signed(values: &[f64], confidence: f64) -> Self {
-        let statistics = Statistics::of(values.iter().copied());
-        let n = values.len();
-        let half = if n < 2 { f64::NAN } else { quantile_of_t(n - 1, confidence) * statistics.sd / (n as f64).sqrt() };
-        Self { mean: statistics.mean, low: statistics.mean - half, high: statistics.mean + half, n }
-    }
-}
-
-/// Returns the quantile of Student's t distribution for a two-sided interval of the given confidence.
-fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
-    StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
-}
-
 /// Errors of position on the screen, over the runs of all seeds.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
+    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if the interval has another method.
+    pub bootstrap: Option<BootstrapSize>,
     /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
     /// Percentiles of the error over all evaluated pixels of all seeds, in pixels.
@@ -73,7 +31,7 @@ pub struct ErrorSpread {
 }
 
 /// Contribution of one cause to the mean error on the screen.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct CauseShare {
     /// The cause of the error. `None` for the remainder, which is the interaction of all causes.
     pub cause: Option<Cause>,
@@ -83,16 +41,17 @@ pub struct CauseShare {
 }
 
 /// Mean error of a comparison row when another predictor replaces its own.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the row's own predictor.
     pub kind: PredictorKind,
     /// Mean error on the screen in pixels. NaN if no pixel was evaluated.
+    #[serde(deserialize_with = "number_or_nan")]
     pub mean_px: f64,
 }
 
 /// Results of one low-latency method in a comparison.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ComparisonRow {
     /// Name of the row: the name of a pipeline or of one of its variants.
     pub pipeline: String,
@@ -100,6 +59,10 @@ pub struct ComparisonRow {
     pub settings: String,
     /// Number of eyes, each with its own frame buffer, that the pipeline draws for.
     pub eyes: usize,
+    /// Number of seeds with which the row ran.
+    pub seeds: usize,
+    /// True if the interval of the mean error is as narrow as the query asked for. `None` if the query did not ask.
+    pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
     /// Latency of the machine alone in milliseconds, over the complete pictures of all seeds.
@@ -111,6 +74,12 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
+    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the time
+    /// from the measured pose to the arrival of its report, the second from the start of an eye's TRANSFORM to the swap.
+    ///
+    /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
+    /// EDIT and the scan.
+    pub tracking_and_rendering_ms: MeanInterval,
     /// Stages of the latency from head to display in milliseconds, over the complete pictures of all seeds.
     pub end_to_end: Budget,
     /// Prediction interval in milliseconds: from the newest measurement of the head to the instant for which a picture
@@ -161,8 +130,9 @@ impl ComparisonRow {
         contender: &ComparedPipeline,
         pipeline: &dyn Pipeline,
         trials: &[&Trial],
-        confidence: f64,
+        sampling: Sampling,
     ) -> Self {
+        let confidence = sampling.confidence;
         let is_reference = contender.showing == Showing::Ideal;
         // The reference is computed for each pixel's own instant and has no latency.
         let definition = if is_reference {
@@ -170,22 +140,26 @@ impl ComparisonRow {
         } else {
             pipeline.latency_definition()
         };
+        let sums_ms: Vec<f64> = trials.iter().filter_map(|trial| trial.tracking_and_rendering_ms).collect();
         let hz: Vec<f64> = trials.iter().filter_map(|trial| trial.updates_hz).collect();
         Self {
             pipeline: contender.name.clone(),
             settings: settings_text(contender),
             eyes: pipeline.eyes(),
+            seeds: sampling.seeds,
+            is_precise: None,
             latency_definition: definition.to_owned(),
             latency_ms: pooled(trials, |trial| &trial.latency_ms),
             head_to_light_ms: pooled(trials, |trial| &trial.head_to_light_ms),
             turn_to_light_ms: pooled(trials, |trial| &trial.turn_to_light_ms),
+            tracking_and_rendering_ms: MeanInterval::of(&sums_ms, confidence),
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
             updates_hz: MeanInterval::of(&hz, confidence),
             due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
             not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
             late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
-            error: ErrorSpread::of(trials, confidence),
+            error: ErrorSpread::of(trials, sampling),
             window: trials.first().and_then(|trial| trial.window),
             causes: causes(trials, confidence),
             predictors: Vec::new(),
@@ -216,6 +190,17 @@ impl ComparisonRow {
     pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0
     }
+}
+
+/// Sample of runs behind a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sampling {
+    /// Number of seeds.
+    pub(super) seeds: usize,
+    /// True if the head moves the same way for every seed, because the motion is a recording.
+    pub(super) is_one_motion: bool,
+    /// Confidence of all intervals, between 0 and 1.
+    pub(super) confidence: f64,
 }
 
 /// Returns the sum of the known values, or `None` if all values are unknown.
@@ -257,20 +242,52 @@ fn causes(trials: &[&Trial], confidence: f64) -> Vec<CauseShare> {
 }
 
 impl ErrorSpread {
-    fn of(trials: &[&Trial], confidence: f64) -> Self {
+    /// Combines the errors of all runs. Several motions give an interval over the seeds. One motion gives an interval
+    /// over time, because further seeds do not move the head otherwise.
+    pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
+        let confidence = sampling.confidence;
         let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
         let px: Vec<f64> = judged.iter().map(|trial| trial.errors.pixels.mean).collect();
         let deg: Vec<f64> = judged.iter().map(|trial| trial.errors.degrees.mean).collect();
         let mut all: Vec<f64> = judged.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
-        Self {
+        let mut spread = Self {
             mean_px: MeanInterval::of(&px, confidence),
+            bootstrap: None,
             mean_deg: MeanInterval::of(&deg, confidence),
             pixels: Percentiles::of(all.iter().copied()),
             n: judged.iter().map(|trial| trial.errors.judged).sum(),
             distribution_px: hundredths(&all),
+        };
+        if sampling.is_one_motion || px.len() < 2 {
+            spread.bootstrap_over_time(&judged, confidence);
         }
+        spread
     }
+
+    /// Replaces the interval of the mean by that of a bootstrap over the fields. The interval has no ends if the run is
+    /// too short for a bootstrap.
+    fn bootstrap_over_time(&mut self, judged: &[&Trial], confidence: f64) {
+        let mean = self.mean_px.mean;
+        let bootstrap = BlockBootstrap::of(&mean_of_fields(judged));
+        let (low, high) = bootstrap.as_ref().map_or((f64::NAN, f64::NAN), |it| it.interval(mean, confidence));
+        let method = if bootstrap.is_some() { IntervalMethod::MovingBlockBootstrap } else { IntervalMethod::None };
+        self.mean_px = MeanInterval { low, high, method, ..self.mean_px };
+        // Angles are not kept for each field, so their mean has no interval over time.
+        self.mean_deg = self.mean_deg.without_interval();
+        self.bootstrap = bootstrap.map(|it| it.size());
+    }
+}
+
+/// Returns the mean error of each evaluated field in the order of time, averaged over the seeds.
+fn mean_of_fields(judged: &[&Trial]) -> Vec<f64> {
+    let mut fields: BTreeMap<PeriodNumber, (f64, f64)> = BTreeMap::new();
+    for field in judged.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
+        let (sum, n) = fields.entry(field.field).or_default();
+        *sum += field.mean_px;
+        *n += 1.0;
+    }
+    fields.into_values().map(|(sum, n)| sum / n).collect()
 }
 
 /// Returns the minimum of sorted numbers, followed by the percentiles 1 to 100. Percentile p is the smallest number
@@ -285,45 +302,6 @@ fn hundredths(sorted: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_interval_of_five_means_is_that_of_the_tables() {
-        // Mean 3, sample sd sqrt(2.5); t with 4 degrees of freedom is 2.776 (any table).
-        let interval = MeanInterval::of_signed(&[1.0, 2.0, 3.0, 4.0, 5.0], CONFIDENCE);
-        let half = 2.776_445 * 2.5f64.sqrt() / 5f64.sqrt();
-        assert_eq!((interval.mean, interval.n), (3.0, 5));
-        assert!((interval.high - 3.0 - half).abs() < 1e-5 && (3.0 - interval.low - half).abs() < 1e-5, "{interval:?}");
-    }
-
-    #[test]
-    fn the_interval_of_a_positive_quantity_stays_positive() {
-        // Mean 10, sample sd sqrt(100 + 100 + 0) / sqrt(2) = 10; t with 2 degrees of freedom is 4.303: the symmetric interval is
-        // 10 - 24.8 to 10 + 24.8.
-        let values = [0.1, 10.0, 19.9];
-        let factor = (4.302_653 * 9.9 / 3f64.sqrt() / 10.0f64).exp();
-        let interval = MeanInterval::of(&values, CONFIDENCE);
-        assert!(
-            (interval.low - 10.0 / factor).abs() < 1e-4 && (interval.high - 10.0 * factor).abs() < 1e-3,
-            "{interval:?}"
-        );
-        assert!(MeanInterval::of_signed(&values, CONFIDENCE).low < 0.0);
-    }
-
-    #[test]
-    fn a_higher_confidence_gives_a_wider_interval() {
-        // t with 4 degrees of freedom: 2.776 at 95 %, 4.604 at 99 % (any table).
-        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let [usual, wide] = [0.95, 0.99].map(|confidence| MeanInterval::of_signed(&values, confidence));
-        let ratio = (wide.high - wide.mean) / (usual.high - usual.mean);
-        assert!((ratio - 4.604_095 / 2.776_445).abs() < 1e-4, "{ratio}");
-    }
-
-    #[test]
-    fn one_seed_has_a_mean_and_no_interval() {
-        let interval = MeanInterval::of(&[7.0], CONFIDENCE);
-        assert!(interval.mean == 7.0 && interval.low.is_nan() && interval.high.is_nan());
-        assert!(MeanInterval::of(&[], CONFIDENCE).mean.is_nan());
-    }
 
     #[test]
     fn hundredths_of_a_thousand_numbers_are_every_tenth() {

@@ -3,7 +3,7 @@
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
-use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
+use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
 use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
@@ -16,6 +16,7 @@ pub(super) struct Trial {
     pub(super) latency_ms: Vec<f64>,
     pub(super) head_to_light_ms: Vec<f64>,
     pub(super) turn_to_light_ms: Vec<f64>,
+    pub(super) tracking_and_rendering_ms: Option<f64>,
     pub(super) prediction_interval_ms: Vec<f64>,
     pub(super) budget: Budget,
     pub(super) errors: PixelErrors,
@@ -71,6 +72,7 @@ impl Trial {
             latency_ms: times(latencies_ms(outcome)),
             head_to_light_ms: times(Budget::totals_ms(outcome)),
             turn_to_light_ms: times(turns_ms(outcome)),
+            tracking_and_rendering_ms: tracking_and_rendering_ms(outcome).filter(|_| is_timed),
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
             causes: ErrorCauses::of(outcome, showing, &errors),

@@ -5,7 +5,7 @@ use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, reprojection, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
-use pxpl5_run::{Aim, Head, Pipeline};
+use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};
 use std::sync::Arc;
 use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
@@ -42,6 +42,7 @@ impl HeadChoice {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = reprojection::read(file, pipeline)?;
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
+        let place = file.choice("head.place", &HeadPlace::NAMES)?.unwrap_or_default();
         // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
@@ -60,7 +61,8 @@ impl HeadChoice {
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
-        let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim);
+        let head =
+            head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
         let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);
@@ -78,6 +80,12 @@ impl HeadChoice {
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
+    }
+
+    /// Returns true if the motion of the head is a recording.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        is_recording(&self.motion)
     }
 
     /// Returns the warnings about the recording of the head's motion.
@@ -103,6 +111,9 @@ impl HeadChoice {
         ]
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
+        if self.head.place() != HeadPlace::default() {
+            all.push(("head.place".to_owned(), Value::from(self.head.place().name())));
+        }
         all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.

@@ -47,6 +47,11 @@ const COMMON: &[(&str, &str)] = &[
         "instant for which a view is predicted, within the time in which it is shown: middle, first-pixel, last-pixel or retrace",
     ),
     (
+        "head.place",
+        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins; default) or world (the \
+          poses are metres in the scene's coordinates)",
+    ),
+    (
         "head.filter",
         "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in the run) or \
           given (those of tracking.filter)",

@@ -22,7 +22,7 @@ const PIXELS: Kind = &[("px", 1.0), ("pixels", 1.0)];
 const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, PIXELS];
 
 /// Units of the keys that are not machine or tracking parameters.
-const UNITS: [(&str, &str); 7] = [
+const UNITS: [(&str, &str); 8] = [
     ("motion.distance", "m"),
     ("motion.deg_per_s", "deg/s"),
     ("head.judge_at", "m"),
@@ -30,6 +30,7 @@ const UNITS: [(&str, &str); 7] = [
     ("hmd.eye_distance", "mm"),
     ("hmd.near", "m"),
     ("hmd.far", "m"),
+    ("hmd.convergence", "m"),
 ];
 
 /// Converts a text such as `20us` to a number in the unit of a key.

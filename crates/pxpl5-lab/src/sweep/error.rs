@@ -91,7 +91,7 @@ pub enum SweepError {
 }
 
 impl SweepError {
-    pub(super) fn io(path: &std::path::Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn io(path: &std::path::Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.display().to_string();
         move |error| Self::Io { path, doing, reason: error.to_string() }
     }

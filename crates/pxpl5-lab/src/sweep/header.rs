@@ -1,6 +1,6 @@
 //! The header of a sweep's file of rows, which holds all data needed to repeat the sweep.
 
-use super::{Axis, Sweep, Values};
+use super::{Axis, Sweep, Values, measures};
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_run::Fingerprint;
 use serde::{Deserialize, Serialize};
@@ -80,7 +80,7 @@ impl Sweep {
         let settings: BTreeMap<String, Value> =
             self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect();
         let measure: BTreeMap<String, String> =
-            first.measure.iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
+            measures(&first).iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
         // The version is part of the hash, because results may change between versions.
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Ok(Header {
@@ -113,7 +113,7 @@ fn hash(
     hash.setting("first", first.fingerprint());
     // Maps are sorted by their keys, so equal settings give equal texts.
     settings.iter().for_each(|(path, value)| hash.setting(path, value));
-    first.measure.iter().for_each(|measure| hash.setting("measure", measure.name()));
+    measures(first).iter().for_each(|measure| hash.setting("measure", measure.name()));
     for axis in axes {
         hash.setting("axis", axis.paths.join(","));
         match &axis.steps {

@@ -1,7 +1,7 @@
 //! The input files that points of a sweep read.
 
 use super::{Sweep, Values};
-use crate::experiment_file::{beside, is_file};
+use crate::experiment_file::{ExperimentFile, beside, is_file};
 use crate::head_names::is_recording;
 use pxpl5_run::Fingerprint;
 use std::collections::BTreeMap;
@@ -16,11 +16,8 @@ impl Sweep {
     /// Returns the hash of each file that a point may read, by the name in the sweep. A file that cannot be read counts
     /// as empty. Points that need this file fail with the reason.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
-        let mut inputs = BTreeMap::new();
+        let mut inputs = inputs_of(&self.base);
         for (key, names_file) in KEYS {
-            if let Some(setting) = self.base.settings.get(key) {
-                put(&mut inputs, names_file, &setting.folder, &setting.value);
-            }
             let folder = self.folder();
             for (path, values) in self.space.axes().iter().flat_map(|axis| axis.paths.iter().zip(&axis.values)) {
                 if let (true, Values::Listed(list)) = (path == key, values) {
@@ -30,6 +27,17 @@ impl Sweep {
         }
         inputs
     }
+}
+
+/// Returns the hash of each file that an experiment file names, by the name in the file.
+pub(crate) fn inputs_of(file: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
+    let mut inputs = BTreeMap::new();
+    for (key, names_file) in KEYS {
+        if let Some(setting) = file.settings.get(key) {
+            put(&mut inputs, names_file, &setting.folder, &setting.value);
+        }
+    }
+    inputs
 }
 
 fn put(inputs: &mut BTreeMap<String, Fingerprint>, names_file: NamesFile, folder: &Path, value: &Value) {

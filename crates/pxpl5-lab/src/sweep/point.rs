@@ -1,7 +1,7 @@
 //! Simulates one point of a sweep.
 
-use super::Sweep;
 use super::header::json;
+use super::{Sweep, measures};
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -97,7 +97,7 @@ impl Sweep {
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
         let results = plan.run(scene).map_err(|error| error.to_string())?;
-        let measured = plan.measure.iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
+        let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
         Ok(Simulated { measured, config_hash, trace_hash })
     }

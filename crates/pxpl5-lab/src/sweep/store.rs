@@ -228,13 +228,13 @@ fn remove_leftover_files(folder: &Path) {
     }
 }
 
-pub(super) fn line_of(value: &impl Serialize) -> String {
+pub(crate) fn line_of(value: &impl Serialize) -> String {
     let mut line = serde_json::to_string(value).unwrap_or_default();
     line.push('\n');
     line
 }
 
-fn lock(folder: &Path) -> Result<File, SweepError> {
+pub(crate) fn lock(folder: &Path) -> Result<File, SweepError> {
     let path = folder.join(LOCK_FILE);
     let file = File::create(&path).map_err(SweepError::io(&path, "cannot be written"))?;
     match file.try_lock() {
@@ -245,7 +245,7 @@ fn lock(folder: &Path) -> Result<File, SweepError> {
 }
 
 /// Opens a file for appending. Bytes after the first `keep` bytes are removed.
-fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
+pub(crate) fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
     let cut = file.and_then(|file| {
         file.set_len(keep)?;

@@ -63,7 +63,7 @@ fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
         format!("version={}\nfirst={first}\n", header.version),
         "fields=10\nmeasure=[\"latency_ms.mean\",\"last_copy_ms\"]\npipeline=\"slats\"\nscene=\"full-screen:4\"\n"
             .to_owned(),
-        "measure=latency_ms.mean\nmeasure=last_copy_ms\naxis=seed\nstep=[1]\nstep=[2]\n".to_owned(),
+        "measure=latency_ms.mean\nmeasure=last_copy_ms\nmeasure=missed_retraces\nmeasure=pictures_due\nmeasure=error_px.n\naxis=seed\nstep=[1]\nstep=[2]\n".to_owned(),
     ];
     let expected = pxpl5_run::Fingerprint::of(lines.concat().as_bytes());
     assert_eq!(header.config_hash, expected.to_string());

@@ -35,6 +35,8 @@ pub struct ChartPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
+    /// True for a hollow marker. It shows that the value cannot be compared with the others.
+    pub is_hollow: bool,
 }
 
 /// The style in which the points of a series are drawn.
@@ -46,8 +48,6 @@ pub enum SeriesStyle {
     Band,
     /// A marker at each point, without a line. Each confidence interval is a vertical line.
     Points,
-    /// Like [`SeriesStyle::Points`], with hollow markers.
-    HollowPoints,
 }
 
 /// A named series of points.
@@ -215,6 +215,7 @@ impl Chart {
 struct Placed {
     at: (f64, f64),
     interval: Option<(f64, f64)>,
+    is_hollow: bool,
 }
 
 /// Splits points into runs without gaps. A point without a position (NaN) ends a run.
@@ -223,7 +224,8 @@ fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));
         let (low, high) = (axes.1.place(point.interval.0), axes.1.place(point.interval.1));
         let interval = (low.is_finite() && high.is_finite()).then_some((low, high));
-        (at.0.is_finite() && at.1.is_finite()).then_some(Placed { at, interval })
+        let is_hollow = point.is_hollow;
+        (at.0.is_finite() && at.1.is_finite()).then_some(Placed { at, interval, is_hollow })
     };
     let all: Vec<_> = points.iter().map(placed).collect();
     all.split(Option::is_none)
@@ -248,7 +250,7 @@ fn draw_series<'a>(
                 let upper = bounded.iter().rev().map(|(x, (_, high))| (*x, *high));
                 plane.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), look.colour.mix(0.2))])?;
             }
-            SeriesStyle::Points | SeriesStyle::HollowPoints | SeriesStyle::Band => {
+            SeriesStyle::Points | SeriesStyle::Band => {
                 let upright = |(x, (low, high)): &(f64, (f64, f64))| vec![(*x, *low), (*x, *high)];
                 plane.draw_series(bounded.iter().map(|point| PathElement::new(upright(point), look.stroke())))?;
             }
@@ -265,8 +267,8 @@ fn draw_series<'a>(
             };
         }
         if series.look != SeriesStyle::Line {
-            let look = look.hollow(series.look == SeriesStyle::HollowPoints);
-            places().try_for_each(|at| look.mark(plane.plotting_area(), at))?;
+            let area = plane.plotting_area();
+            run.iter().try_for_each(|point| look.hollow(point.is_hollow).mark(area, point.at))?;
         }
     }
     Ok(())
@@ -276,8 +278,10 @@ fn draw_series<'a>(
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;
-    if matches!(series.look, SeriesStyle::Points | SeriesStyle::HollowPoints) {
-        look.hollow(series.look == SeriesStyle::HollowPoints).mark(area, (x + em, y))?;
+    // A series without a single comparable point has a hollow sample.
+    let look = look.hollow(!series.points.is_empty() && series.points.iter().all(|point| point.is_hollow));
+    if series.look == SeriesStyle::Points {
+        look.mark(area, (x + em, y))?;
     } else {
         let ends = vec![(x, y), (x + 2 * em, y)];
         match look.dashes() {

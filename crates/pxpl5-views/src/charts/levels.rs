@@ -37,7 +37,7 @@ fn series_of(level: &SpeedAndError) -> ChartSeries {
 /// Returns the chart position of an entry. Speeds below one field per second are drawn at one.
 const fn point_of(level: &SpeedAndError) -> ChartPoint {
     let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
-    ChartPoint { at, interval: (f64::NAN, f64::NAN) }
+    ChartPoint { at, interval: (f64::NAN, f64::NAN), is_hollow: false }
 }
 
 /// Returns the line through the best entries, starting with the fastest. Returns `None` for fewer than two entries.

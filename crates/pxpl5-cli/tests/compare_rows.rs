@@ -1,0 +1,167 @@
+//! Tests of the finished rows, the length and the precision of `pxpl5 compare`, as a user runs it.
+
+mod support;
+
+use serde_json::Value;
+use support::{Folder, err};
+
+const SHORT: [&str; 10] = [
+    "compare",
+    "--scene",
+    "full-screen:2",
+    "--fields",
+    "24",
+    "--seeds",
+    "2",
+    "--only",
+    "slats,jitp-field,ideal",
+    "--json",
+];
+
+fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&SHORT, more].concat()
+}
+
+fn read(folder: &Folder, name: &str) -> String {
+    std::fs::read_to_string(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Returns the comparison of a folder without the times on the host.
+fn comparison(folder: &Folder, out: &str) -> Value {
+    let mut all: Value = serde_json::from_str(&read(folder, &format!("{out}/comparison.json"))).expect("JSON");
+    for row in all["pipelines"].as_array_mut().expect("a list") {
+        row["host_seconds"] = Value::Null;
+    }
+    all
+}
+
+/// Leaves the folder as a kill leaves it: one whole row, half of another, and no results.
+fn interrupt(folder: &Folder, out: &str) -> String {
+    let rows = read(folder, &format!("{out}/rows/rows.jsonl"));
+    let lines: Vec<&str> = rows.split_inclusive('\n').collect();
+    assert_eq!(lines.len(), 4, "a header and three rows");
+    let kept = [lines[0], lines[1], &lines[2][..lines[2].len() / 2]].concat();
+    folder.file(&format!("{out}/rows/rows.jsonl"), kept);
+    std::fs::remove_file(folder.0.join(out).join("comparison.json")).expect("written before");
+    lines[1].to_owned()
+}
+
+#[test]
+fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
+    let folder = Folder::new("compare-resume");
+    let whole = folder.run(&with(&["--out", "whole"]));
+    assert!(whole.status.success(), "{}", err(&whole));
+    assert!(err(&whole).contains("row 3 of 3, ") && err(&whole).contains(" s to go"), "{}", err(&whole));
+    assert!(folder.run(&with(&["--out", "o"])).status.success());
+    let kept = interrupt(&folder, "o");
+    // Without --resume nothing is lost.
+    let refused = folder.run(&with(&["--out", "o"]));
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        err(&refused).contains("1 of 3 rows of an interrupted comparison are here; continue with --resume"),
+        "{}",
+        err(&refused)
+    );
+    let resumed = folder.run(&with(&["--out", "o", "--resume"]));
+    assert!(resumed.status.success(), "{}", err(&resumed));
+    assert!(err(&resumed).contains("1 of 3 rows were finished before"), "{}", err(&resumed));
+    assert!(read(&folder, "o/rows/rows.jsonl").lines().nth(1) == Some(kept.trim_end()), "the row was not repeated");
+    assert_eq!(comparison(&folder, "o"), comparison(&folder, "whole"));
+    for name in ["rows.csv", "errors.csv", "error-over-time.svg", "gallery.html"] {
+        assert!(read(&folder, &format!("o/{name}")) == read(&folder, &format!("whole/{name}")), "{name}");
+    }
+    // A complete comparison is replaced as before, and resumed without any run.
+    let done = folder.run(&with(&["--out", "o", "--resume"]));
+    assert!(done.status.success() && !err(&done).contains("row 3 of 3"), "{}", err(&done));
+    assert!(folder.run(&with(&["--out", "o"])).status.success());
+}
+
+#[test]
+fn rows_of_other_settings_are_refused_and_the_key_is_named() {
+    let folder = Folder::new("compare-foreign");
+    assert!(folder.run(&with(&["--out", "o"])).status.success());
+    interrupt(&folder, "o");
+    for (more, key) in [
+        (&["--set", "machine.gp.triangle_ns=20000"][..], "machine.gp.triangle_ns was not set, expected 20000"),
+        (&["--set", "hmd.near=0.1"], "hmd.near was not set, expected 0.1"),
+        (&["--confidence", "0.9"], "--confidence was 0.95, expected 0.9"),
+        (&["--until-precision", "10%"], "--max-seeds was none, expected 50"),
+        (&["--seed", "3"], "--seeds was [1, 2], expected [3, 4]"),
+    ] {
+        let refused = folder.run(&with(&[&["--out", "o", "--resume"], more].concat()));
+        assert_eq!(refused.status.code(), Some(2), "{more:?}");
+        assert!(
+            err(&refused).contains("rows are of another comparison") && err(&refused).contains(key),
+            "{}",
+            err(&refused)
+        );
+    }
+    let mut rows = read(&folder, "o/rows/rows.jsonl").replacen("\"pipeline\"", "\"pipelin\"", 1);
+    rows.push('\n');
+    folder.file("o/rows/rows.jsonl", rows);
+    let damaged = folder.run(&with(&["--out", "o", "--resume"]));
+    assert!(err(&damaged).contains("rows.jsonl, line 2: expected a row of a comparison"), "{}", err(&damaged));
+}
+
+/// Writes a recording of a head that turns back and forth, one pose for each hundredth of a second, from 0 to `hundredths`.
+fn recording(folder: &Folder, name: &str, hundredths: u32) {
+    let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
+    for n in 0..=hundredths {
+        let time = f64::from(n) / 100.0;
+        let half = (0.2 * (3.0 * time).sin() + 0.05 * (11.0 * time).cos()) / 2.0;
+        text += &format!("{time},0,0,0,{},0,{},0\n", half.cos(), half.sin());
+    }
+    folder.file(name, text);
+}
+
+/// A field lasts 1001/60000 s: 2 s hold 119.88 fields, and 120 fields take 2.002 s.
+#[test]
+fn a_recording_sets_the_length_and_has_an_interval_over_time() {
+    let folder = Folder::new("compare-recording");
+    recording(&folder, "head.csv", 200);
+    let usual = ["compare", "--scene", "full-screen:2", "--only", "slats,jitp-field", "--head", "head.csv", "--json"];
+    let run = |more: &[&str]| folder.run(&[&usual, more].concat());
+    for (more, fields) in [
+        (&["--seeds", "1"][..], 119),
+        (&["--seeds", "2", "--fields", "120"], 119),
+        (&["--seeds", "1", "--fields", "60"], 60),
+        (&["--seeds", "1", "--fields", "150", "--set", "head.end=hold"], 150),
+    ] {
+        let output = run(more);
+        assert!(output.status.success(), "{}", err(&output));
+        let warning = "the recording of the head ends before 120 fields: each run has 119 fields";
+        assert_eq!(err(&output).contains(warning), more.contains(&"120"), "{}", err(&output));
+        let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(json["fields"], fields, "{more:?}");
+        for row in json["pipelines"].as_array().expect("a list") {
+            let mean = &row["error"]["mean_px"];
+            assert_eq!(mean["method"], "moving_block_bootstrap", "{row}");
+            let [low, mean, high] = ["low", "mean", "high"].map(|name| mean[name].as_f64().expect(name));
+            assert!(0.0 < low && low < mean && mean < high, "{row}");
+            let size = &row["error"]["bootstrap"];
+            assert!(size["fields"].as_u64() <= Some(fields) && size["block_fields"].as_u64() >= Some(1), "{row}");
+        }
+    }
+    let refused = run(&["--until-precision", "10%"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(err(&refused).contains("a recording is one motion"), "{}", err(&refused));
+}
+
+#[test]
+fn seeds_are_added_until_the_interval_is_narrow_or_the_maximum_is_reached() {
+    let folder = Folder::new("compare-precision");
+    let usual = ["compare", "--scene", "full-screen:2", "--fields", "24", "--seeds", "2", "--only", "slats", "--json"];
+    let run = |more: &[&str]| {
+        let output = folder.run(&[&usual, more].concat());
+        assert!(output.status.success(), "{}", err(&output));
+        let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let row = json["pipelines"][0].clone();
+        (row["seeds"].as_u64(), row["is_precise"].as_bool(), row["error"]["mean_px"]["n"].as_u64())
+    };
+    assert_eq!(run(&[]), (Some(2), None, Some(2)));
+    assert_eq!(run(&["--until-precision", "0.001%", "--max-seeds", "5"]), (Some(5), Some(false), Some(5)));
+    assert_eq!(run(&["--until-precision", "1e9px"]), (Some(2), Some(true), Some(2)));
+    let refused = folder.run(&[&usual, &["--until-precision", "10"][..]].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(err(&refused).contains("share of the mean (10%) or in pixels (0.2px)"), "{}", err(&refused));
+}

@@ -1,0 +1,84 @@
+//! Errors of a comparison and of its file of rows.
+
+use crate::experiment_file::FileError;
+use crate::sweep::SweepError;
+use thiserror::Error;
+
+/// Error that prevents a comparison.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A setting is invalid.
+    #[error(transparent)]
+    Settings(#[from] FileError),
+    /// The number of fields is too small or too large.
+    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
+    Fields {
+        /// Minimum and maximum number of fields.
+        expected: (u64, u64),
+        /// Number of fields in the settings.
+        found: u64,
+    },
+    /// The query has no seeds.
+    #[error("expected at least one seed, found none")]
+    NoSeed,
+    /// The registry has no pipeline that is to be compared.
+    #[error("expected a registry with a pipeline that is compared, found none")]
+    NoPipeline,
+    /// A row in the query does not exist.
+    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
+    Row {
+        /// Names of all rows, separated by commas.
+        expected: String,
+        /// Name of the row in the query.
+        found: String,
+        /// Name of the existing row that is most similar to the name in the query.
+        nearest: String,
+    },
+    /// The settings have no head motion, so there is no error to compare.
+    #[error("expected a head.motion, found none: without a head there is no error to compare")]
+    NoHead,
+    /// The query asks for a precision, but more seeds cannot move the head otherwise.
+    #[error(
+        "a recording is one motion: its interval is a bootstrap over time, which more seeds do not make narrower; use a longer \
+         recording, or compare without a precision"
+    )]
+    OneMotion,
+    /// A file of finished rows cannot be read or written.
+    #[error(transparent)]
+    Files(#[from] SweepError),
+    /// The folder holds rows of a comparison with other settings.
+    #[error("{path}: these rows are of another comparison: {key} was {found}, expected {expected}")]
+    OtherSettings {
+        /// Path of the file of rows.
+        path: String,
+        /// First key or option that differs.
+        key: String,
+        /// Value of this comparison.
+        expected: String,
+        /// Value in the file.
+        found: String,
+    },
+    /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.
+    #[error(
+        "{path}: {rows} of {of} rows of an interrupted comparison are here; continue with --resume, or choose another folder"
+    )]
+    Unfinished {
+        /// Path of the file of rows.
+        path: String,
+        /// Number of finished rows.
+        rows: usize,
+        /// Number of rows of the interrupted comparison.
+        of: usize,
+    },
+    /// A line in the file of rows is not a row.
+    #[error("{path}, line {line}: expected a row of a comparison, found {found}")]
+    Damaged {
+        /// Path of the file of rows.
+        path: String,
+        /// Number of the line, counted from 1.
+        line: usize,
+        /// Error of the parser.
+        found: String,
+    },
+}

@@ -1,0 +1,158 @@
+//! A mean with its confidence interval.
+
+use distrs::StudentsT;
+use pxpl5_run::{Statistics, number_or_nan};
+use serde::{Deserialize, Serialize};
+
+/// Method by which an interval of a mean was computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IntervalMethod {
+    /// No interval, because the numbers are too few.
+    None,
+    /// Student's t over the means of the seeds.
+    StudentT,
+    /// Student's t over the means of the seeds, for the logarithm (delta method).
+    StudentTOfLogarithm,
+    /// Moving-block bootstrap over the fields of one motion ([`BlockBootstrap`](super::BlockBootstrap)).
+    MovingBlockBootstrap,
+}
+
+impl IntervalMethod {
+    /// All methods.
+    pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::MovingBlockBootstrap, Self::None];
+
+    /// Returns the method in words, for tables.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::None => "no interval",
+            Self::StudentT => "Student's t over the seeds",
+            Self::StudentTOfLogarithm => "Student's t over the seeds, of the logarithm",
+            Self::MovingBlockBootstrap => "moving-block bootstrap over the fields",
+        }
+    }
+}
+
+/// A mean over seeds with its confidence interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeanInterval {
+    /// Mean of the seeds' means. NaN if there are no seeds.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub mean: f64,
+    /// Lower end of the confidence interval. NaN without an interval.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub low: f64,
+    /// Upper end of the confidence interval. NaN without an interval.
+    #[serde(deserialize_with = "number_or_nan")]
+    pub high: f64,
+    /// Number of seeds.
+    pub n: usize,
+    /// Method of the interval.
+    pub method: IntervalMethod,
+}
+
+/// Default confidence of an interval, as a probability.
+pub const CONFIDENCE: f64 = 0.95;
+
+impl MeanInterval {
+    /// Computes the mean and its interval from one number for each seed, at a confidence between 0 and 1. The quantity
+    /// must not be negative.
+    ///
+    /// The interval is computed for the logarithm (delta method), so that its lower end stays positive. It reaches from
+    /// `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the result is the symmetric
+    /// interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the symmetric interval is not cut.
+    #[must_use]
+    pub fn of(values: &[f64], confidence: f64) -> Self {
+        let symmetric = Self::of_signed(values, confidence);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        if symmetric.method == IntervalMethod::None || least < 0.0 {
+            return symmetric;
+        }
+        if least == 0.0 {
+            return Self { low: symmetric.low.max(0.0), ..symmetric };
+        }
+        let factor = ((symmetric.high - symmetric.mean) / symmetric.mean).exp();
+        let method = IntervalMethod::StudentTOfLogarithm;
+        Self { low: symmetric.mean / factor, high: symmetric.mean * factor, method, ..symmetric }
+    }
+
+    /// Computes the mean and its symmetric interval from one number for each seed. The numbers can be negative.
+    #[must_use]
+    pub fn of_signed(values: &[f64], confidence: f64) -> Self {
+        let statistics = Statistics::of(values.iter().copied());
+        let n = values.len();
+        let (half, method) = if n < 2 {
+            (f64::NAN, IntervalMethod::None)
+        } else {
+            (quantile_of_t(n - 1, confidence) * statistics.sd / (n as f64).sqrt(), IntervalMethod::StudentT)
+        };
+        Self { mean: statistics.mean, low: statistics.mean - half, high: statistics.mean + half, n, method }
+    }
+
+    /// Returns the width of the interval, or `None` without an interval.
+    #[must_use]
+    pub fn width(&self) -> Option<f64> {
+        Some(self.high - self.low).filter(|width| width.is_finite())
+    }
+
+    /// Returns the mean alone.
+    pub(super) const fn without_interval(self) -> Self {
+        Self { low: f64::NAN, high: f64::NAN, method: IntervalMethod::None, ..self }
+    }
+}
+
+/// Returns the quantile of Student's t distribution for a two-sided interval of the given confidence.
+fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
+    StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_five_means_is_that_of_the_tables() {
+        // Mean 3, sample sd sqrt(2.5); t with 4 degrees of freedom is 2.776 (any table).
+        let interval = MeanInterval::of_signed(&[1.0, 2.0, 3.0, 4.0, 5.0], CONFIDENCE);
+        let half = 2.776_445 * 2.5f64.sqrt() / 5f64.sqrt();
+        assert_eq!((interval.mean, interval.n), (3.0, 5));
+        assert!((interval.high - 3.0 - half).abs() < 1e-5 && (3.0 - interval.low - half).abs() < 1e-5, "{interval:?}");
+    }
+
+    #[test]
+    fn the_interval_of_a_positive_quantity_stays_positive() {
+        // Mean 10, sample sd sqrt(100 + 100 + 0) / sqrt(2) = 10; t with 2 degrees of freedom is 4.303: the symmetric interval is
+        // 10 - 24.8 to 10 + 24.8.
+        let values = [0.1, 10.0, 19.9];
+        let factor = (4.302_653 * 9.9 / 3f64.sqrt() / 10.0f64).exp();
+        let interval = MeanInterval::of(&values, CONFIDENCE);
+        assert!(
+            (interval.low - 10.0 / factor).abs() < 1e-4 && (interval.high - 10.0 * factor).abs() < 1e-3,
+            "{interval:?}"
+        );
+        assert!(MeanInterval::of_signed(&values, CONFIDENCE).low < 0.0);
+    }
+
+    #[test]
+    fn a_higher_confidence_gives_a_wider_interval() {
+        // t with 4 degrees of freedom: 2.776 at 95 %, 4.604 at 99 % (any table).
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let [usual, wide] = [0.95, 0.99].map(|confidence| MeanInterval::of_signed(&values, confidence));
+        let ratio = (wide.high - wide.mean) / (usual.high - usual.mean);
+        assert!((ratio - 4.604_095 / 2.776_445).abs() < 1e-4, "{ratio}");
+    }
+
+    #[test]
+    fn one_seed_has_a_mean_and_no_interval() {
+        let interval = MeanInterval::of(&[7.0], CONFIDENCE);
+        assert!(interval.mean == 7.0 && interval.low.is_nan() && interval.high.is_nan());
+        assert!(MeanInterval::of(&[], CONFIDENCE).mean.is_nan());
+    }
+
+    #[test]
+    fn an_interval_of_a_quantity_that_was_zero_once_has_no_negative_end() {
+        let interval = MeanInterval::of(&[0.0, 10.0, 0.1], CONFIDENCE);
+        assert!(interval.low == 0.0 && interval.high > 10.0, "{interval:?}");
+    }
+}

@@ -1,0 +1,56 @@
+//! The length of a comparison along a recording.
+
+use super::error::CompareError;
+use super::query::CompareQuery;
+use crate::experiment_file::Plan;
+use pxpl5_sim::Time;
+use pxpl5_wire::NodeId;
+
+/// Length of the runs along a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordedLength {
+    /// Number of whole display periods in the recording, which is the length of each run.
+    pub fields: u64,
+    /// Larger number of fields in the settings, which the recording does not cover. `None` if the settings have none.
+    pub asked: Option<u64>,
+}
+
+/// Number of display fields of each run if neither the settings nor a recording give a length: five seconds.
+const USUAL_FIELDS: i64 = 300;
+
+impl CompareQuery {
+    /// Sets the length of the runs, if the settings do not have one: the length of the recording that the head replays,
+    /// else five seconds. If the settings ask for more than the recording covers, they also get its length.
+    ///
+    /// Returns the length if it is that of a recording. A recording that is repeated without end has no length. Settings
+    /// may ask for more than the recording if they say that the head stands still behind its end.
+    ///
+    /// # Errors
+    ///
+    /// Fails if a setting is invalid, or if the registry has no compared pipeline.
+    pub fn set_length(&mut self) -> Result<Option<RecordedLength>, CompareError> {
+        let plan = self.first_plan()?;
+        let asked = self.shared.place_of("fields").map(|_| plan.fields);
+        let may_pass_the_end = plan.head.as_ref().is_some_and(|head| head.head().motion().ends_ps().is_none());
+        let is_covered = |fields: &u64| asked.is_some_and(|asked| asked <= *fields || may_pass_the_end);
+        let recorded = recorded_fields(&plan).filter(|fields| !is_covered(fields));
+        if let Some(fields) = recorded {
+            self.shared.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "the length of the recording")?;
+        } else if asked.is_none() {
+            self.shared.set("fields", USUAL_FIELDS, "compare")?;
+        }
+        Ok(recorded.map(|fields| RecordedLength { fields, asked }))
+    }
+}
+
+/// Returns the number of whole display periods in the recording of a plan's head. Returns `None` if the motion is not a
+/// recording, if the recording is repeated without end, or if the display cannot be built.
+fn recorded_fields(plan: &Plan) -> Option<u64> {
+    let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
+    let ends = Time(head.motion().moves_until_ps()?);
+    let config = plan.machine.displays.first()?;
+    let ports = config.ports(plan.pipeline.eyes());
+    let nodes: Vec<NodeId> = (0..ports).filter_map(|n| Some(NodeId(n.try_into().ok()?))).collect();
+    // A period that begins when the recording ends is the first that is not simulated.
+    Some(config.build(&nodes).ok()?.period_at(ends).0)
+}

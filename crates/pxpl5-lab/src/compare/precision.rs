@@ -1,0 +1,128 @@
+//! The width at which the interval of a mean is narrow enough, and the number of seeds that it takes.
+
+use super::interval::MeanInterval;
+use std::fmt;
+use std::str::FromStr;
+
+/// Greatest width of the interval of a mean error, from its lower to its upper end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Precision {
+    /// Width as a share of the mean, above 0.
+    Share(f64),
+    /// Width in pixels, above 0.
+    Pixels(f64),
+}
+
+/// Goal of a comparison that adds seeds to a row until the interval of its mean error is narrow enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UntilPrecise {
+    /// Greatest width of the interval.
+    pub width: Precision,
+    /// Maximum number of seeds of a row.
+    pub max_seeds: usize,
+}
+
+/// Default maximum number of seeds of a row. Assumed: 10 times the default number of seeds.
+pub const MAX_SEEDS: usize = 50;
+
+impl UntilPrecise {
+    /// Returns true if the interval exists and is narrow enough.
+    #[must_use]
+    pub fn is_reached(&self, error: &MeanInterval) -> bool {
+        error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
+    }
+
+    /// Returns the number of seeds to add to a row, and 0 if the interval is narrow enough or the maximum is reached.
+    ///
+    /// The width falls with the square root of the number of seeds. A step at most doubles the number, because the first
+    /// widths are uncertain.
+    #[must_use]
+    pub fn seeds_to_add(&self, error: &MeanInterval, seeds: usize) -> usize {
+        if self.is_reached(error) {
+            return 0;
+        }
+        let ratio = error.width().unwrap_or(f64::INFINITY) / self.greatest_width(error.mean);
+        let needed = (seeds as f64 * ratio * ratio).ceil();
+        // A number that is too large for an integer, or NaN, is beyond the doubled number.
+        let needed = if needed <= 2.0 * seeds as f64 { needed as usize } else { 2 * seeds };
+        needed.max(seeds + 1).min(self.max_seeds).saturating_sub(seeds)
+    }
+
+    fn greatest_width(&self, mean: f64) -> f64 {
+        match self.width {
+            Precision::Share(share) => share * mean,
+            Precision::Pixels(px) => px,
+        }
+    }
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Share(share) => write!(f, "{}%", share * 100.0),
+            Self::Pixels(px) => write!(f, "{px}px"),
+        }
+    }
+}
+
+impl FromStr for Precision {
+    type Err = PrecisionError;
+
+    /// Parses a share of the mean (`10%`) or a width in pixels (`0.2px`).
+    fn from_str(text: &str) -> Result<Self, PrecisionError> {
+        let number = |digits: &str| digits.trim().parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
+        let share = text.strip_suffix('%').and_then(number).map(|percent| Self::Share(percent / 100.0));
+        let pixels = || text.strip_suffix("px").and_then(number).map(Self::Pixels);
+        share.or_else(pixels).ok_or_else(|| PrecisionError { found: text.to_owned() })
+    }
+}
+
+/// Error of a text that is no precision.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px), found `{found}`")]
+pub struct PrecisionError {
+    /// Text that was found.
+    pub found: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TENTH: UntilPrecise = UntilPrecise { width: Precision::Share(0.1), max_seeds: 50 };
+
+    fn error(half: f64) -> MeanInterval {
+        let of_two = MeanInterval::of_signed(&[9.0, 11.0], 0.95);
+        MeanInterval { mean: 10.0, low: 10.0 - half, high: 10.0 + half, ..of_two }
+    }
+
+    #[test]
+    fn the_width_is_that_of_the_whole_interval() {
+        assert!(TENTH.is_reached(&error(0.5)) && !TENTH.is_reached(&error(0.51)));
+        let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
+        assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));
+        assert!(!TENTH.is_reached(&MeanInterval::of(&[5.0], 0.95)), "one seed has no interval");
+    }
+
+    /// An interval that is 1.2 times too wide needs 1.44 times the seeds: 7.2, so 8.
+    #[test]
+    fn seeds_grow_with_the_square_of_the_width_and_at_most_double() {
+        assert_eq!(TENTH.seeds_to_add(&error(0.6), 5), 3);
+        assert_eq!(TENTH.seeds_to_add(&error(60.0), 5), 5);
+        assert_eq!(TENTH.seeds_to_add(&error(60.0), 40), 10);
+        assert_eq!(TENTH.seeds_to_add(&error(60.0), 50), 0);
+        assert_eq!(TENTH.seeds_to_add(&error(0.1), 5), 0);
+    }
+
+    #[test]
+    fn a_precision_without_a_unit_is_an_error_that_shows_both_units() {
+        assert_eq!(
+            ["5%", "0.2px"].map(|text| text.parse().ok()),
+            [Some(Precision::Share(0.05)), Some(Precision::Pixels(0.2))]
+        );
+        for text in ["5", "0%", "-1px", "NaN%", "", "infpx"] {
+            let error = text.parse::<Precision>().expect_err(text).to_string();
+            assert!(error.contains("10%") && error.contains("0.2px") && error.contains(text), "{error}");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Opening of the finished rows of a comparison, with the settings that identify them.
+
+use super::error::CompareError;
+use super::query::CompareQuery;
+use super::store::{CompareStore, Header, ROWS_SCHEMA};
+use crate::experiment_file::plain;
+use crate::sweep::inputs_of;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+impl CompareQuery {
+    /// Opens or creates the folder of finished rows. If `resume` is true, the rows are kept; else the rows of a complete
+    /// comparison are replaced.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`CompareError`] in these cases:
+    ///
+    /// - The folder cannot be read or written, or is in use.
+    /// - A line before the last is damaged.
+    /// - `resume` is true, and the folder holds rows with other settings. The error names the first key that differs.
+    /// - `resume` is false, and the folder holds rows of an interrupted comparison.
+    /// - A setting of the query is invalid.
+    pub fn open_store(&self, folder: &Path, resume: bool) -> Result<CompareStore, CompareError> {
+        CompareStore::open(folder, &self.header()?, resume)
+    }
+
+    fn header(&self) -> Result<Header, CompareError> {
+        let (plan, rows) = self.identity()?;
+        let mut settings: BTreeMap<String, String> =
+            self.shared.settings.iter().map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();
+        let mut put = |key: &str, value: String| drop(settings.insert(key.to_owned(), value));
+        // Options of the comparison are named as on the command line.
+        put("--seeds", format!("{:?}", self.seeds));
+        put("--limits", self.limits.to_string());
+        put("--confidence", self.confidence.to_string());
+        put("--until-precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
+        put("--max-seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
+        put("pictures", self.pictures.to_string());
+        for (name, contents) in inputs_of(&self.shared) {
+            put(&format!("contents of {name}"), contents.to_string());
+        }
+        let (schema, version) = (ROWS_SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
+        Ok(Header { schema, version, rows, settings, config_hash: plan.fingerprint().to_string() })
+    }
+}

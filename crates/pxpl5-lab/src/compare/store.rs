@@ -1,0 +1,203 @@
+//! The finished rows of a comparison in a folder, so that an interrupted comparison can go on.
+//!
+//! ```text
+//!  rows/rows.jsonl    header, then one line for each finished row
+//!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
+//! ```
+//!
+//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
+//! removed, and only its row is computed again.
+
+use super::error::CompareError;
+use super::gallery::LastPicture;
+use super::row::ComparisonRow;
+use crate::sweep::{ROWS_FILE, SweepError, line_of, lock, opened};
+use image::RgbImage;
+use pxpl5_measure::FieldMisregistration;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Name and version of the JSON layout of the rows.
+pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/1";
+
+/// Name of the folder with the finished rows, within the folder of a comparison.
+pub const ROWS_FOLDER: &str = "rows";
+
+/// Settings of a comparison, in the first line of its file of rows.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Header {
+    pub(super) schema: String,
+    /// Version of the program that wrote the rows.
+    pub(super) version: String,
+    /// Names of all rows of the comparison.
+    pub(super) rows: Vec<String>,
+    /// Keys and options with their values, and the hashes of the files that they name.
+    pub(super) settings: BTreeMap<String, String>,
+    /// Hash of all effective settings of the first row, also of those from presets.
+    pub(super) config_hash: String,
+}
+
+/// A line of the file: a row, and the data of the row that comparison.json leaves out.
+#[derive(Debug, Serialize, Deserialize)]
+struct Line {
+    row: ComparisonRow,
+    by_field: Vec<FieldMisregistration>,
+    /// Last picture of the row. The pictures themselves are in files.
+    picture: Option<PictureFiles>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct PictureFiles {
+    seen: String,
+    should_be: Option<String>,
+    is_complete: bool,
+}
+
+/// The finished rows of a comparison, stored in one folder.
+#[derive(Debug)]
+pub struct CompareStore {
+    folder: PathBuf,
+    /// Rows that an earlier process has finished.
+    found: Vec<ComparisonRow>,
+    /// The file of rows, and the number of its rows.
+    rows: Mutex<(File, usize)>,
+    /// Lock of the folder, held as long as the store exists.
+    _lock: File,
+}
+
+impl CompareStore {
+    /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
+    /// describes.
+    pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, CompareError> {
+        fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        // The lock comes before any change to the folder.
+        let lock = lock(folder)?;
+        let path = folder.join(ROWS_FILE);
+        let (before, mut lines, mut end) = read(&path)?;
+        if resume {
+            header.check(&path, before.as_ref())?;
+        } else {
+            let of = before.map_or(0, |before| before.rows.len());
+            if !lines.is_empty() && lines.len() < of {
+                return Err(CompareError::Unfinished { path: path.display().to_string(), rows: lines.len(), of });
+            }
+            (lines, end) = (Vec::new(), 0);
+        }
+        let mut file = opened(&path, end)?;
+        if end == 0 {
+            put(&mut file, &path, &line_of(header))?;
+        }
+        let found: Vec<ComparisonRow> = lines.into_iter().map(|line| line.row_in(folder)).collect::<Result<_, _>>()?;
+        let rows = Mutex::new((file, found.len()));
+        Ok(Self { folder: folder.to_owned(), found, rows, _lock: lock })
+    }
+
+    /// Returns the number of rows that an earlier process has finished.
+    #[must_use]
+    pub const fn found(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Returns the row with this name, if an earlier process has finished it.
+    #[must_use]
+    pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
+        self.found.iter().find(|row| row.pipeline == name)
+    }
+
+    /// Appends a finished row. Returns the row with the numbers that a later process reads, so that an interruption
+    /// changes no result.
+    pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, CompareError> {
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = rows.1 + 1;
+        // The pictures come first, because the line names them.
+        let picture = row.picture.as_ref().map(|picture| self.put_picture(number, picture)).transpose()?;
+        let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
+        let path = self.folder.join(ROWS_FILE);
+        put(&mut rows.0, &path, &text)?;
+        rows.1 = number;
+        parsed::<Line>(&path, number + 1, text.as_bytes())?.row_in(&self.folder)
+    }
+
+    fn put_picture(&self, number: usize, picture: &LastPicture) -> Result<PictureFiles, CompareError> {
+        let put = |what: &str, picture: &RgbImage| {
+            let name = format!("{number}-{what}.png");
+            let path = self.folder.join(&name);
+            let written = picture.save_with_format(&path, image::ImageFormat::Png).map_err(std::io::Error::other);
+            written.map_err(SweepError::io(&path, "cannot be written"))?;
+            Ok::<_, CompareError>(name)
+        };
+        let should_be = picture.should_be.as_ref().map(|ideal| put("should-be", ideal)).transpose()?;
+        Ok(PictureFiles { seen: put("seen", &picture.seen)?, should_be, is_complete: picture.is_complete })
+    }
+}
+
+impl Header {
+    /// Returns an error that names the first difference to the header of a file.
+    fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), CompareError> {
+        let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };
+        let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
+        let keys = self.settings.keys().chain(found.settings.keys());
+        let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
+        // The hash comes last, because a key tells more.
+        let pairs = [
+            ("schema", self.schema.clone(), found.schema.clone()),
+            ("version", self.version.clone(), found.version.clone()),
+        ];
+        let last = [
+            ("--only", self.rows.join(","), found.rows.join(",")),
+            ("the hash of all settings", self.config_hash.clone(), found.config_hash.clone()),
+        ];
+        match pairs.into_iter().chain(settings).chain(last).find(|(_, expected, found)| expected != found) {
+            Some((key, expected, found)) => {
+                let path = path.display().to_string();
+                Err(CompareError::OtherSettings { path, key: key.to_owned(), expected, found })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+impl Line {
+    /// Returns the row with its pictures, which are read from the folder.
+    fn row_in(self, folder: &Path) -> Result<ComparisonRow, CompareError> {
+        let read = |name: &String| {
+            let path = folder.join(name);
+            let picture = image::open(&path).map_err(std::io::Error::other);
+            Ok::<_, CompareError>(picture.map_err(SweepError::io(&path, "cannot be read"))?.into_rgb8())
+        };
+        let picture = self.picture.map(|files| {
+            let should_be = files.should_be.as_ref().map(read).transpose()?;
+            Ok::<_, CompareError>(LastPicture { seen: read(&files.seen)?, should_be, is_complete: files.is_complete })
+        });
+        Ok(ComparisonRow { by_field: self.by_field, picture: picture.transpose()?, ..self.row })
+    }
+}
+
+/// Reads the header, the rows, and the length in bytes up to the end of the last complete line. All are empty if the
+/// file does not exist.
+fn read(path: &Path) -> Result<(Option<Header>, Vec<Line>, u64), CompareError> {
+    let bytes = match fs::read(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        bytes => bytes.map_err(SweepError::io(path, "cannot be read"))?,
+    };
+    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let mut lines = (1..).zip(bytes[..whole].split_inclusive(|byte| *byte == b'\n'));
+    let header = lines.next().map(|(number, line)| parsed(path, number, line)).transpose()?;
+    let rows = lines.map(|(number, line)| parsed(path, number, line)).collect::<Result<_, _>>()?;
+    Ok((header, rows, whole as u64))
+}
+
+fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, CompareError> {
+    serde_json::from_slice(text).map_err(|error| {
+        let path = path.display().to_string();
+        CompareError::Damaged { path, line, found: error.to_string() }
+    })
+}
+
+fn put(file: &mut File, path: &Path, line: &str) -> Result<(), CompareError> {
+    Ok(file.write_all(line.as_bytes()).map_err(SweepError::io(path, "cannot be written"))?)
+}
