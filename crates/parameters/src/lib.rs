@@ -37,6 +37,7 @@
 mod error;
 mod info;
 mod macros;
+mod name;
 mod nearest;
 mod number;
 mod table;
@@ -45,6 +46,7 @@ mod value;
 
 pub use error::ParameterError;
 pub use info::{ParameterInfo, Standing};
+pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};

@@ -19,6 +19,8 @@ pub enum PolicyKind {
     Cells,
 }
 
+parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
+
 impl PolicyKind {
     /// All policies, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];

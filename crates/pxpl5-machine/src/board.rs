@@ -59,14 +59,22 @@ impl fmt::Display for EventDescription {
     }
 }
 
+/// An error for a text that does not name a board.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected host, ring, gp N, renderer N or display N, found {found:?}")]
+pub struct BoardError {
+    /// The text that was given.
+    pub found: String,
+}
+
 impl FromStr for Board {
-    type Err = String;
+    type Err = BoardError;
 
     /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let refused = format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
+    fn from_str(text: &str) -> Result<Self, BoardError> {
+        let refused = BoardError { found: text.to_owned() };
         let text = text.to_ascii_lowercase();
         // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());
@@ -112,7 +120,10 @@ mod tests {
         let others = ["", "gp", "host 3", "ring0", "GP -1", "renderer x", "7", "display 99999999999999999999999"];
         for wrong in spaces.into_iter().chain(others) {
             let error = wrong.parse::<Board>().expect_err(wrong);
-            assert_eq!(error, format!("expected host, ring, gp N, renderer N or display N, found {wrong:?}"));
+            assert_eq!(
+                error.to_string(),
+                format!("expected host, ring, gp N, renderer N or display N, found {wrong:?}")
+            );
         }
     }
 }

@@ -114,8 +114,7 @@ impl Outcome {
 
     /// Returns the value of a measured quantity by its name, or None if the run does not have the quantity.
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
-        let measure = Measure::named(name)
-            .map_err(|nearest| wrong_setting(format!("there is no quantity `{name}`; did you mean `{nearest}`?")))?;
+        let measure = Measure::named(name).map_err(wrong_setting)?;
         Ok(measure.of(self.results(py)?))
     }
 

@@ -30,6 +30,13 @@ pub enum Pixels {
     All,
 }
 
+impl Pixels {
+    /// All choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
+}
+
+parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
+
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 

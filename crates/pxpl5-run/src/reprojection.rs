@@ -3,6 +3,7 @@
 use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::str::FromStr;
 
 /// The method by which a device moves a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -85,10 +86,35 @@ impl Reprojection {
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 
+parameters::named!(Warp, "method of reprojection", Warp::ALL);
+parameters::named!(Every, "part of a scan", Every::ALL);
+
 impl fmt::Display for Reprojection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let by = Warp::ALL.iter().find(|(_, by)| *by == self.by).map_or("", |(name, _)| name);
-        let every = Every::ALL.iter().find(|(_, every)| *every == self.every).map_or("", |(name, _)| name);
-        write!(f, "{by} every {every}, {} us", self.latency_us)
+        write!(f, "{} every {}, {} us", self.by, self.every, self.latency_us)
+    }
+}
+
+/// An error for a text that does not describe a correction of the raster.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected plain, vdrt or a device such as `rotation every line, 100 us`, found `{found}`")]
+pub struct RasterError {
+    /// The text that was given.
+    pub found: String,
+}
+
+impl FromStr for Reprojection {
+    type Err = RasterError;
+
+    /// Parses a text such as `rotation every line, 100 us`, the form in which a device is written.
+    fn from_str(text: &str) -> Result<Self, RasterError> {
+        let parse = || {
+            let (way, latency) = text.split_once(", ")?;
+            let (by, every) = way.split_once(" every ")?;
+            let latency_us = latency.strip_suffix(" us")?.parse().ok()?;
+            let is_valid = (Self::LATENCY_US.0..=Self::LATENCY_US.1).contains(&latency_us);
+            is_valid.then_some(Self { by: by.parse().ok()?, every: every.parse().ok()?, latency_us })
+        };
+        parse().ok_or_else(|| RasterError { found: text.to_owned() })
     }
 }

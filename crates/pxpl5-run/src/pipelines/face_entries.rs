@@ -1,6 +1,6 @@
 //! Registry entries of the address recalculation pipelines: names, settings and variants.
 
-use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 use super::{SHADING, shading_or};
 use crate::keys::{Key, PipelineSettings};
@@ -73,8 +73,7 @@ fn build(policy: FacePolicy, latch: Latch, settings: &PipelineSettings) -> Arc<d
 }
 
 fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
-    let named = |name: &str| POLICIES.iter().position(|policy| *policy == name);
-    let policy = settings.name(POLICY.name).and_then(named).map_or(FacePolicy::Full, |place| ALL_POLICIES[place]);
+    let policy = settings.name(POLICY.name).and_then(|name| name.parse().ok()).unwrap_or(FacePolicy::Full);
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 
