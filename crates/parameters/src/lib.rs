@@ -50,5 +50,5 @@ pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
-pub use text::text_of;
+pub use text::{TextError, text_of};
 pub use value::{MAX, Value};

@@ -49,7 +49,7 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
             let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
             let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
             let bytes = listed.map_or_else(|| fs::read(&path), Ok).map_err(|error| problem(error.to_string()))?;
-            let text = text_of(&bytes).map_err(problem)?;
+            let text = text_of(&bytes).map_err(|error| problem(error.to_string()))?;
             return read(text).map(Some).map_err(problem);
         }
     }

@@ -53,6 +53,7 @@ pub use experiment_file::{
 };
 pub use head_names::{MotionError, PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
+pub use parallel::map as in_parallel;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};

@@ -1,5 +1,6 @@
 //! Names of boards, and descriptions of their events.
 
+use parameters::TextError;
 use pxpl5_sim::Time;
 use std::fmt;
 use std::str::FromStr;
@@ -59,22 +60,14 @@ impl fmt::Display for EventDescription {
     }
 }
 
-/// An error for a text that does not name a board.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected host, ring, gp N, renderer N or display N, found {found:?}")]
-pub struct BoardError {
-    /// The text that was given.
-    pub found: String,
-}
-
 impl FromStr for Board {
-    type Err = BoardError;
+    type Err = TextError;
 
     /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
-    fn from_str(text: &str) -> Result<Self, BoardError> {
-        let refused = BoardError { found: text.to_owned() };
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        let refused = TextError::whole("host, ring, gp N, renderer N or display N", text);
         let text = text.to_ascii_lowercase();
         // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());

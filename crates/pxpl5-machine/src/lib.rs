@@ -30,7 +30,7 @@ mod run_error;
 mod savings;
 mod traffic;
 
-pub use board::{Board, BoardError, EventDescription};
+pub use board::{Board, EventDescription};
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};

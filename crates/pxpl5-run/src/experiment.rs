@@ -224,6 +224,9 @@ impl Experiment {
     ///
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
+    ///
+    /// Hidden, because the estimates change error messages only. Plans of experiment files set them.
+    #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;

@@ -94,7 +94,7 @@ pub use pxpl5_display::{Aim, LightTimes};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use rehearsal::{DryRun, SeenTimes};
-pub use reprojection::{Every, RasterError, Reprojection, Warp};
+pub use reprojection::{Every, Reprojection, Warp};
 pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use samples::{KEPT_SAMPLES, Samples};
 pub use says::{PixelField, bit_of, in_ms, in_us};

@@ -1,6 +1,7 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
-use crate::reprojection::{RasterError, Reprojection};
+use crate::reprojection::Reprojection;
+use parameters::TextError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -34,10 +35,10 @@ impl Raster {
 }
 
 impl FromStr for Raster {
-    type Err = RasterError;
+    type Err = TextError;
 
     /// Parses `plain`, `vdrt`, or a device such as `rotation every line, 100 us`.
-    fn from_str(text: &str) -> Result<Self, RasterError> {
+    fn from_str(text: &str) -> Result<Self, TextError> {
         let named = Self::ALL.iter().find(|(name, _)| *name == text).map(|(_, raster)| *raster);
         named.map_or_else(|| text.parse().map(Self::Reprojected), Ok)
     }

@@ -1,5 +1,6 @@
 //! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
+use parameters::TextError;
 use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -95,19 +96,14 @@ impl fmt::Display for Reprojection {
     }
 }
 
-/// An error for a text that does not describe a correction of the raster.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected plain, vdrt or a device such as `rotation every line, 100 us`, found `{found}`")]
-pub struct RasterError {
-    /// The text that was given.
-    pub found: String,
-}
+/// The forms in which a correction of the raster can be written as text.
+pub(crate) const RASTER_FORMS: &str = "plain, vdrt or a device such as `rotation every line, 100 us`";
 
 impl FromStr for Reprojection {
-    type Err = RasterError;
+    type Err = TextError;
 
     /// Parses a text such as `rotation every line, 100 us`, the form in which a device is written.
-    fn from_str(text: &str) -> Result<Self, RasterError> {
+    fn from_str(text: &str) -> Result<Self, TextError> {
         let parse = || {
             let (way, latency) = text.split_once(", ")?;
             let (by, every) = way.split_once(" every ")?;
@@ -115,6 +111,6 @@ impl FromStr for Reprojection {
             let is_valid = (Self::LATENCY_US.0..=Self::LATENCY_US.1).contains(&latency_us);
             is_valid.then_some(Self { by: by.parse().ok()?, every: every.parse().ok()?, latency_us })
         };
-        parse().ok_or_else(|| RasterError { found: text.to_owned() })
+        parse().ok_or_else(|| TextError::whole(RASTER_FORMS, text))
     }
 }
