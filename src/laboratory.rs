@@ -55,6 +55,16 @@ pub use pxpl5_lab::{Snapshot, SnapshotError};
 pub use pxpl5_lab::{WhatIf, what_if};
 
 /// ```
+/// use pxpl5::StudyError;
+/// use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+///
+/// // The papers' drawings of pipelines, as runs. An invalid setting or a run that fails is one kind of error.
+/// let run = || -> Result<_, StudyError> { PIPELINE_FIGURES[0].run() };
+/// assert!(run().is_ok());
+/// ```
+pub use pxpl5_lab::StudyError;
+
+/// ```
 /// use pxpl5::prelude::*;
 /// use pxpl5::Workstation;
 ///
@@ -106,8 +116,8 @@ pub mod lab {
     /// // All keys of an experiment file.
     /// let keys: Vec<FileKey> = ExperimentFile::keys_of(&registry());
     /// assert!(!keys.is_empty());
-    /// // A scene's own path is chosen by `motion`.
-    /// let text = "pipeline = \"slats\"\nscene = \"mig\"\nmotion = \"still\"\n";
+    /// // The key `motion.path` selects the path of the head.
+    /// let text = "pipeline = \"slats\"\nscene = \"mig\"\nmotion.path = \"still\"\n";
     /// let path: Option<PathChoice> = ExperimentFile::parse(text, "an experiment")?.resolve()?.scene.motion.path;
     /// assert!(path.is_some());
     /// # Ok::<(), pxpl5::FileError>(())

@@ -28,6 +28,7 @@ pub mod application_time;
 pub mod code_times;
 pub mod compare;
 pub mod diff;
+mod error;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
@@ -47,6 +48,7 @@ mod suitability;
 pub mod sweep;
 mod what_if;
 
+pub use error::StudyError;
 pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
     Settings, tracking_parameters,

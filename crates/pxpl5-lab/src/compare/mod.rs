@@ -21,5 +21,5 @@ pub use contender::usual_rows;
 pub use gallery::LastPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
-pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
+pub use query::{CompareQuery, Comparison, LEAST_SEEDS};
 pub use row::{CONFIDENCE, CauseShare, ComparisonRow, ErrorSpread, MeanInterval, PredictorMean};

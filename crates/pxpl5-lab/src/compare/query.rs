@@ -4,7 +4,8 @@ use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::predictors::predictor_means;
 use super::row::ComparisonRow;
 use super::trial::{Trial, common_window_from};
-use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
+use crate::error::StudyError;
+use crate::experiment_file::{ExperimentFile, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use parameters::nearest;
@@ -15,7 +16,6 @@ use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use thiserror::Error;
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
 /// all observations of a run in memory to evaluate its errors in several ways.
@@ -44,42 +44,6 @@ pub struct CompareQuery {
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
     pub confidence: f64,
-}
-
-/// Error that prevents a comparison.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// A setting is invalid.
-    #[error(transparent)]
-    Settings(#[from] FileError),
-    /// The number of fields is too small or too large.
-    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
-    Fields {
-        /// Minimum and maximum number of fields.
-        expected: (u64, u64),
-        /// Number of fields in the settings.
-        found: u64,
-    },
-    /// The query has no seeds.
-    #[error("expected at least one seed, found none")]
-    NoSeed,
-    /// The registry has no pipeline that is to be compared.
-    #[error("expected a registry with a pipeline that is compared, found none")]
-    NoPipeline,
-    /// A row in the query does not exist.
-    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
-    Row {
-        /// Names of all rows, separated by commas.
-        expected: String,
-        /// Name of the row in the query.
-        found: String,
-        /// Name of the existing row that is most similar to the name in the query.
-        nearest: String,
-    },
-    /// The settings have no head motion, so there is no error to compare.
-    #[error("expected a head.motion, found none: without a head there is no error to compare")]
-    NoHead,
 }
 
 /// Result of a comparison: the shared settings, and one row for each method.
@@ -119,8 +83,8 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
-    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
+    /// Returns [`StudyError`] when a setting is invalid, or when the run is too short to evaluate.
+    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, StudyError> {
         self.run_with(finished, |_| {})
     }
 
@@ -134,7 +98,7 @@ impl CompareQuery {
         &self,
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, CompareError> {
+    ) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
@@ -155,7 +119,7 @@ impl CompareQuery {
                 step();
             }
             ended(&row);
-            Ok::<_, CompareError>(row)
+            Ok::<_, StudyError>(row)
         });
         Ok(Comparison {
             schema: "pxpl5-comparison/2",
@@ -178,20 +142,20 @@ impl CompareQuery {
     /// # Errors
     ///
     /// Fails in the same cases as [`CompareQuery::run`].
-    pub fn plans(&self) -> Result<Vec<Plan>, CompareError> {
+    pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns the pipelines to compare, in the order of the registry.
-    fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, CompareError> {
+    fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
         let mut chosen = compared_pipelines(self.shared.registry());
         let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
         for found in &self.only {
             if !names.contains(found) {
                 let nearest = nearest(found, names.iter().map(String::as_str)).unwrap_or_default().to_owned();
-                return Err(CompareError::Row { expected: names.join(", "), found: found.clone(), nearest });
+                return Err(StudyError::Row { expected: names.join(", "), found: found.clone(), nearest });
             }
         }
         chosen.retain(|contender| self.only.is_empty() || self.only.contains(&contender.name));
@@ -199,17 +163,17 @@ impl CompareQuery {
     }
 
     /// Returns the plan of the first row with the first seed, to check the shared settings.
-    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
-        let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
-        let first = compared_pipelines.first().ok_or(CompareError::NoPipeline)?;
+    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
+        let seed = *self.seeds.first().ok_or(StudyError::NoSeed)?;
+        let first = compared_pipelines.first().ok_or(StudyError::NoPipeline)?;
         let plan = first.plan(&self.shared, seed)?;
         if plan.head.is_none() {
-            return Err(CompareError::NoHead);
+            return Err(StudyError::NoHead);
         }
         // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
-            return Err(CompareError::Fields { expected, found: plan.fields });
+            return Err(StudyError::Fields { expected, found: plan.fields });
         }
         Ok(plan)
     }
@@ -227,7 +191,7 @@ impl CompareQuery {
         contender: &ComparedPipeline,
         trials: &[Result<Trial, String>],
         scene: &Arc<Scene>,
-    ) -> Result<ComparisonRow, CompareError> {
+    ) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         // Failed runs are left out, and their first error is reported below.
         let ran: Vec<&Trial> = trials.iter().flatten().collect();

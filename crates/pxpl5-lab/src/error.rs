@@ -1,0 +1,80 @@
+//! The error of studies of many experiments.
+
+use crate::experiment_file::FileError;
+use pxpl5_run::{ExperimentError, HeadError};
+use thiserror::Error;
+use tracking::rig::RigError;
+
+/// An error that prevents a study: a comparison, a limit over a setting, a published figure of a pipeline, or a
+/// measurement with the latency rig.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// A setting is invalid.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An experiment of the study cannot run.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+    /// The number of fields is too small or too large.
+    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
+    Fields {
+        /// Minimum and maximum number of fields.
+        expected: (u64, u64),
+        /// Number of fields in the settings.
+        found: u64,
+    },
+    /// The query has no seeds.
+    #[error("expected at least one seed, found none")]
+    NoSeed,
+    /// The registry has no pipeline that is to be compared.
+    #[error("expected a registry with a pipeline that is compared, found none")]
+    NoPipeline,
+    /// A row in the query does not exist.
+    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
+    Row {
+        /// Names of all rows, separated by commas.
+        expected: String,
+        /// Name of the row in the query.
+        found: String,
+        /// Name of the existing row that is most similar to the name in the query.
+        nearest: String,
+    },
+    /// The settings have no head motion, so there is no error to compare.
+    #[error("expected a head.motion, found none: without a head there is no error to compare")]
+    NoHead,
+    /// The settings of the tracker are invalid.
+    #[error(transparent)]
+    Tracker(#[from] HeadError),
+    /// The tracker reported no low point of the pendulum, or the photodiode saw no bright pixel.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A requested frame was not shown completely.
+    #[error(
+        "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
+    )]
+    NotShown {
+        /// Number of frames that were requested at low points.
+        expected: usize,
+        /// Number of requested frames that were shown completely, according to the pipeline's records.
+        found: usize,
+    },
+    /// The photodiode cannot tell when a frame of this pipeline appears.
+    #[error("expected a pipeline whose frames a photodiode can tell apart, found {pipeline}: {reason}; {definition}")]
+    NoFrames {
+        /// Name of the pipeline.
+        pipeline: &'static str,
+        /// Reason why a step from dark to bright under the photodiode is not the start of a new frame.
+        reason: &'static str,
+        /// The pipeline's own definition of the time at which a picture is due.
+        definition: &'static str,
+    },
+    /// The line of the photodiode lies below the screen.
+    #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
+    Photodiode {
+        /// Number of lines on the screen.
+        lines: u32,
+        /// Number of the photodiode's line in the settings, counted from 0.
+        found: u32,
+    },
+}
