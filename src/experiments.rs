@@ -59,13 +59,13 @@ pub use pxpl5_run::Head;
 /// use pxpl5::prelude::*;
 ///
 /// let scene = scene::builtin("full-screen:12")?;
-/// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene);
-/// let mut stepper = experiment.fields(60).stepper()?;
+/// let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
+/// let mut stepper = experiment.stepper()?;
 /// assert_eq!(stepper.step_board(Board::Renderer(0)), Pause::Reached);
 /// assert_eq!(stepper.last().map(|event| event.board), Some(Board::Renderer(0)));
 /// // The steps change no result.
 /// let outcome = stepper.finish()?;
-/// assert_eq!(outcome.record().trace_hash(), experiment.fields(60).run()?.record().trace_hash());
+/// assert_eq!(outcome.record().trace_hash(), experiment.run()?.record().trace_hash());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::Stepper;

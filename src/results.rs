@@ -118,7 +118,7 @@ pub use pxpl5_measure::LatencyCurve;
 /// assert!(!fields.is_empty() && Registration::of(&outcome).is_some());
 /// // The part of the error that each cause contributes.
 /// let causes = ErrorCauses::of(&outcome, Showing::Plain, &errors).ok_or("a tracked head")?;
-/// let latency: Option<&ErrorPart> = causes.parts.iter().find(|part| part.cause == Cause::Latency);
+/// let latency: Option<&ErrorPart> = causes.parts_px.iter().find(|part| part.cause == Cause::Latency);
 /// assert!(latency.is_some_and(|part| part.px > 0.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -159,7 +159,7 @@ pub use pxpl5_run::{DefinedStatistics, Samples, Statistics};
 /// println!("{part:?}");
 /// let parts: Vec<LatencyParts> = outcome.latency_parts();
 /// let summary: Summary = outcome.summary();
-/// assert_eq!(parts.len(), summary.latency_ms().n);
+/// assert_eq!(parts.len() as u64, summary.latency_ms().n);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::{

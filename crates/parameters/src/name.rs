@@ -1,8 +1,8 @@
 //! Values with names: reading a name, writing a name, and the error for an unknown name.
 
 use crate::nearest;
+use std::error::Error;
 use std::fmt;
-use thiserror::Error;
 
 /// Largest number of names that an error lists. A longer list is replaced by the most similar name.
 const MAX_LISTED: usize = 12;
@@ -10,8 +10,7 @@ const MAX_LISTED: usize = 12;
 /// An error for a text that is not one of the valid names.
 ///
 /// The message lists the valid names. If there are many, the message states only the most similar name.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{}", message(self))]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
     /// The kind of thing that was named, such as `pipeline`.
     pub what: &'static str,
@@ -35,17 +34,21 @@ impl NameError {
     }
 }
 
-fn message(error: &NameError) -> String {
-    let NameError { what, found, valid } = error;
-    match valid.as_slice() {
-        [] => format!("there is no {what} `{found}`"),
-        [only] => format!("expected {only}, found `{found}`"),
-        [first @ .., last] if valid.len() <= MAX_LISTED => {
-            format!("expected {} or {last}, found `{found}`", first.join(", "))
+impl fmt::Display for NameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, found, valid } = self;
+        match valid.as_slice() {
+            [] => write!(f, "there is no {what} `{found}`"),
+            [only] => write!(f, "expected {only}, found `{found}`"),
+            [first @ .., last] if valid.len() <= MAX_LISTED => {
+                write!(f, "expected {} or {last}, found `{found}`", first.join(", "))
+            }
+            _ => write!(f, "there is no {what} `{found}`; did you mean `{}`?", self.nearest()),
         }
-        _ => format!("there is no {what} `{found}`; did you mean `{}`?", error.nearest()),
     }
 }
+
+impl Error for NameError {}
 
 /// Returns the value with the name `text` from a list of names and values.
 ///

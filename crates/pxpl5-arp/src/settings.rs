@@ -1,6 +1,6 @@
 //! Settings of an experiment.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use address_recalculation::{ArpConfig, ArpTiming};
 use cube_faces::{CubeView, DepthRange};
 use priority_rendering::{Falloff, PriorityTiming};
@@ -118,14 +118,14 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] describes the expected and the found value.
-    pub fn check(&self) -> Result<(), ExperimentError> {
+    /// [`WalkError`] describes the expected and the found value.
+    pub fn check(&self) -> Result<(), WalkError> {
         self.numbers.check()?;
         self.display.check()?;
         if let SourceKind::Timed { triangles_per_s } = self.source
             && (triangles_per_s.is_nan() || triangles_per_s <= 0.0)
         {
-            return Err(ExperimentError::Rate(triangles_per_s));
+            return Err(WalkError::Rate(triangles_per_s));
         }
         Ok(())
     }
@@ -144,7 +144,7 @@ impl Settings {
     /// # Errors
     ///
     /// Same as [`DepthRange::new`].
-    pub fn view(&self) -> Result<CubeView, ExperimentError> {
+    pub fn view(&self) -> Result<CubeView, WalkError> {
         Ok(CubeView { geometry: self.display.geometry(), depth: DepthRange::new(NEAR_M, FAR_M)? })
     }
 

@@ -1,6 +1,6 @@
 //! A straight edge seen through a lens, to test the lens correction.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
 use cube_faces::{Corner, CubeView, DepthRange};
 use glam::DVec3;
@@ -12,8 +12,8 @@ use glam::DVec3;
 ///
 /// # Errors
 ///
-/// [`ExperimentError`] if the lens is invalid.
-pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
+/// [`WalkError`] if the lens is invalid.
+pub fn straight_edge(lens: Lens) -> Result<[f64; 2], WalkError> {
     let config = ArpConfig { lens, ..ArpConfig::IDEAL };
     let config =
         ArpConfig { timing: address_recalculation::ArpTiming { display_memories: 1, ..config.timing }, ..config };
