@@ -147,10 +147,10 @@ pub use results::*;
 
 pub use glam;
 pub use image;
+pub use pphigs::oracle;
 pub use pxpl5_analytic as analytic;
 #[cfg(feature = "arp")]
 pub use pxpl5_arp as arp;
-pub use pxpl5_oracle as oracle;
 pub use pxpl5_scene as scene;
 #[cfg(feature = "views")]
 pub use pxpl5_views as views;
@@ -203,11 +203,11 @@ pub mod firmware {
 
 /// Types for writing a display, or a worker that computes pixels.
 pub mod device {
-    pub use pxpl5_display::{
+    pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
+    pub use pxpl5_wire::display::{
         BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
         DoubleBuffer, Light, LightTimes, Scan, Surface,
     };
-    pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
 }
 
 /// Names that most programs with this crate need: `use pxpl5::prelude::*`.

@@ -121,7 +121,7 @@ pub use pxpl5_machine::Optimization;
 /// assert_eq!(Value::Whole(50).to_string(), "50");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
+pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Standing, Value};
 
 /// ```
 /// use pxpl5::{Board, Level, NameError, TextError};
@@ -132,7 +132,7 @@ pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
 /// let text: TextError = "gpu".parse::<Board>().expect_err("no board");
 /// assert!(text.expected.starts_with("host, ring"));
 /// ```
-pub use parameters::{NameError, TextError};
+pub use pxpl5_sim::parameters::{NameError, TextError};
 
 pub use pxpl5_machine::{PRESETS, Parameter};
 

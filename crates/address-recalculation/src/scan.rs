@@ -19,7 +19,7 @@ pub enum Latch {
     Pixel,
 }
 
-parameters::named!(Latch, "latch event", Latch::ALL);
+pxpl5_sim::parameters::named!(Latch, "latch event", Latch::ALL);
 
 impl Latch {
     /// All events, each with its name on the command line.

@@ -34,7 +34,7 @@ impl RegionBinning {
     pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
 }
 
-parameters::named!(RegionBinning, "choice of regions", RegionBinning::ALL);
+pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning::ALL);
 
 /// Parameters of drawing a view.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! Settings of an experiment.
 
+use crate::cube_faces::{CubeView, DepthRange};
 use crate::error::WalkError;
+use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
-use cube_faces::{CubeView, DepthRange};
-use priority_rendering::{Falloff, PriorityTiming};
 use serde::{Deserialize, Serialize};
 
 /// The policy that decides which segments are drawn in which frames.
@@ -19,7 +19,7 @@ pub enum PolicyKind {
     Cells,
 }
 
-parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
+pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 
 impl PolicyKind {
     /// All policies, each with its name on the command line.

@@ -30,7 +30,7 @@ impl Culling {
     pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
 }
 
-parameters::named!(Culling, "culling", Culling::ALL);
+pxpl5_sim::parameters::named!(Culling, "culling", Culling::ALL);
 
 /// A view of the world for one picture, ready to transform primitives.
 #[derive(Clone, Debug)]

@@ -37,7 +37,7 @@ impl Stage {
     ];
 }
 
-parameters::named!(Stage, "stage", Stage::ALL);
+pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 
 /// The begin or the end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl StageEdge {
     pub const ALL: [(&str, Self); 2] = [("begin", Self::Begin), ("end", Self::End)];
 }
 
-parameters::named!(StageEdge, "edge of a stage", StageEdge::ALL);
+pxpl5_sim::parameters::named!(StageEdge, "edge of a stage", StageEdge::ALL);
 
 /// A record that a stage began or ended at a certain time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -41,7 +41,11 @@ impl CodeVersion {
     }
 }
 
-parameters::named!(CodeVersion, "version of the code", CodeVersion::ALL.map(|version| (version.name(), version)));
+pxpl5_sim::parameters::named!(
+    CodeVersion,
+    "version of the code",
+    CodeVersion::ALL.map(|version| (version.name(), version))
+);
 
 /// The reason why a program on the i860 did not return.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! Names of boards, and descriptions of their events.
 
-use parameters::TextError;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::TextError;
 use std::fmt;
 use std::str::FromStr;
 

@@ -46,4 +46,4 @@ impl Optimization {
     }
 }
 
-parameters::named!(Optimization, "optimization", Optimization::ALL.map(|one| (one.name(), one)));
+pxpl5_sim::parameters::named!(Optimization, "optimization", Optimization::ALL.map(|one| (one.name(), one)));

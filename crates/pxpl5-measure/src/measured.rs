@@ -7,8 +7,8 @@ use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
 use crate::pictures::picture;
 use crate::quantity::Measure;
 use image::RgbImage;
-use parameters::NameError;
 use pxpl5_run::{LatencyParts, Outcome};
+use pxpl5_sim::parameters::NameError;
 use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].

@@ -3,9 +3,9 @@
 use crate::Report;
 use crate::resource::Resource;
 use crate::summary::summary;
-use parameters::{NameError, find_named};
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
+use pxpl5_sim::parameters::{NameError, find_named};
 use std::fmt;
 use std::str::FromStr;
 

@@ -73,4 +73,4 @@ impl Resource {
     }
 }
 
-parameters::named!(Resource, "resource", Resource::ALL.map(|resource| (resource.name(), resource)));
+pxpl5_sim::parameters::named!(Resource, "resource", Resource::ALL.map(|resource| (resource.name(), resource)));

@@ -11,10 +11,10 @@ use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use crate::rehearsal::DryRun;
 use crate::sums::{FinalResults, ObserverFactory};
-use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ impl Pixels {
     pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
 }
 
-parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
+pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
 
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);

@@ -30,4 +30,4 @@ impl Keep {
         [("everything", Self::Everything), ("statistics", Self::Statistics), ("recent", Self::Recent)];
 }
 
-parameters::named!(Keep, "choice of observations", Keep::ALL);
+pxpl5_sim::parameters::named!(Keep, "choice of observations", Keep::ALL);

@@ -49,7 +49,7 @@ impl Level {
     }
 }
 
-parameters::named!(Level, "level", Level::ALL.map(|level| (level.name(), level)));
+pxpl5_sim::parameters::named!(Level, "level", Level::ALL.map(|level| (level.name(), level)));
 
 /// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed
 /// stay.

@@ -1,7 +1,7 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use crate::reprojection::Reprojection;
-use parameters::TextError;
+use pxpl5_sim::parameters::TextError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

@@ -5,9 +5,9 @@ use crate::experiment::{Estimates, Experiment};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
-use parameters::{NameError, find_named};
-use pxpl5_display::DisplayConfig;
 use pxpl5_machine::{MachineConfig, NamedTable};
+use pxpl5_sim::parameters::{NameError, find_named};
+use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
@@ -50,7 +50,7 @@ impl TestScene {
     }
 }
 
-parameters::named!(TestScene, "test scene", TestScene::ALL.map(|scene| (scene.name(), scene)));
+pxpl5_sim::parameters::named!(TestScene, "test scene", TestScene::ALL.map(|scene| (scene.name(), scene)));
 
 /// Criterion by which a search finds the largest number of triangles that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq)]

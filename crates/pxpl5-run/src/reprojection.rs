@@ -1,6 +1,6 @@
 //! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
-use parameters::TextError;
+use pxpl5_sim::parameters::TextError;
 use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -87,8 +87,8 @@ impl Reprojection {
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 
-parameters::named!(Warp, "method of reprojection", Warp::ALL);
-parameters::named!(Every, "part of a scan", Every::ALL);
+pxpl5_sim::parameters::named!(Warp, "method of reprojection", Warp::ALL);
+pxpl5_sim::parameters::named!(Every, "part of a scan", Every::ALL);
 
 impl fmt::Display for Reprojection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

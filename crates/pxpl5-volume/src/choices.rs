@@ -68,7 +68,7 @@ pub(crate) trait Named: Copy + PartialEq + 'static {
     }
 }
 
-parameters::named!(ClipKind, "clip", ClipKind::NAMES.iter().copied());
+pxpl5_sim::parameters::named!(ClipKind, "clip", ClipKind::NAMES.iter().copied());
 
 impl Named for ClipKind {
     const NAMES: &'static [(&'static str, Self)] = &[
@@ -81,14 +81,14 @@ impl Named for ClipKind {
     ];
 }
 
-parameters::named!(ProjectionKind, "projection", ProjectionKind::NAMES.iter().copied());
+pxpl5_sim::parameters::named!(ProjectionKind, "projection", ProjectionKind::NAMES.iter().copied());
 
 impl Named for ProjectionKind {
     const NAMES: &'static [(&'static str, Self)] =
         &[("orthographic", Self::Orthographic), ("perspective", Self::Perspective), ("jittered", Self::Jittered)];
 }
 
-parameters::named!(RendererKind, "renderer", RendererKind::NAMES.iter().copied());
+pxpl5_sim::parameters::named!(RendererKind, "renderer", RendererKind::NAMES.iter().copied());
 
 impl Named for RendererKind {
     const NAMES: &'static [(&'static str, Self)] = &[("host", Self::Host), ("pixel-planes", Self::PixelPlanes)];

@@ -19,7 +19,7 @@ pub enum CopySchedule {
     Backup,
 }
 
-parameters::named!(CopySchedule, "copy schedule", CopySchedule::ALL);
+pxpl5_sim::parameters::named!(CopySchedule, "copy schedule", CopySchedule::ALL);
 
 impl CopySchedule {
     /// All schedules with their names in experiment files.

@@ -50,7 +50,7 @@ impl Binning {
         [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
 }
 
-parameters::named!(Binning, "method of binning", Binning::ALL);
+pxpl5_sim::parameters::named!(Binning, "method of binning", Binning::ALL);
 
 /// The distance from a plane within which a vertex counts as lying on both sides of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -71,7 +71,7 @@ impl BinTolerance {
     pub const ALL: [(&'static str, Self); 2] = [("clip", Self::OfTheClip), ("codes", Self::Codes)];
 }
 
-parameters::named!(BinTolerance, "tolerance of bins", BinTolerance::ALL);
+pxpl5_sim::parameters::named!(BinTolerance, "tolerance of bins", BinTolerance::ALL);
 
 impl BinLayout {
     /// Returns a layout with a single bin, which contains all primitives.

@@ -21,7 +21,7 @@ impl Combine {
     pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
 }
 
-parameters::named!(Combine, "way to combine slices", Combine::ALL);
+pxpl5_sim::parameters::named!(Combine, "way to combine slices", Combine::ALL);
 
 /// The kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,7 +36,7 @@ impl Strobes {
     pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
 }
 
-parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
+pxpl5_sim::parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
 
 /// The settings for rendering a volume from recorded graphics commands.
 #[derive(Clone, Debug, PartialEq)]

@@ -33,7 +33,7 @@ impl TieRule {
     ];
 }
 
-parameters::named!(TieRule, "tie rule", TieRule::ALL);
+pxpl5_sim::parameters::named!(TieRule, "tie rule", TieRule::ALL);
 
 impl TieRule {
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! A measurement of all levels of modelling (speed and error), stored in a file.
 
-use parameters::TextError;
 use pxpl5_run::{Level, Pixels};
+use pxpl5_sim::parameters::TextError;
 use serde::{Deserialize, Serialize};
 
 /// Name and version of the record's JSON layout.

@@ -2,7 +2,7 @@
 
 use super::faces::FacePolicy;
 use crate::keys::{Key, KeyValues};
-use priority_rendering::Falloff;
+use address_recalculation::priority::Falloff;
 
 /// Pipeline names by policy and latch mode.
 pub(super) const NAMES: [[&str; 3]; 4] = [

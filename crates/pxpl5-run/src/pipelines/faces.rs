@@ -13,11 +13,10 @@ use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming};
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::views::{Poses, ReportTimes};
+use address_recalculation::priority::{Falloff, PriorityError, PriorityTiming};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
-use cube_control::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
-use priority_rendering::{Falloff, PriorityError, PriorityTiming};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record, Shown};
@@ -25,6 +24,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::Time;
 use pxpl5_wire::{Body, CopyContent, Lines, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -49,7 +49,7 @@ impl FacePolicy {
         [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells), ("cells-warp", Self::CellsWarped)];
 }
 
-parameters::named!(FacePolicy, "policy", FacePolicy::ALL);
+pxpl5_sim::parameters::named!(FacePolicy, "policy", FacePolicy::ALL);
 
 /// The renderer that draws the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,12 +6,12 @@ use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
-use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::Surface;
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
@@ -65,7 +65,7 @@ impl FinishedRegions {
     }
 }
 
-parameters::named!(FinishedRegions, "action", FinishedRegions::ALL.map(|action| (action.name(), action)));
+pxpl5_sim::parameters::named!(FinishedRegions, "action", FinishedRegions::ALL.map(|action| (action.name(), action)));
 
 impl RenderingControl {
     /// Creates a stereo pipeline with Phong shading, as measured in TR94.

@@ -6,12 +6,12 @@ use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
-use pxpl5_display::LightTimes;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,7 +28,7 @@ pub enum Code {
     Optimised,
 }
 
-parameters::named!(Code, "version of the code", Code::ALL);
+pxpl5_sim::parameters::named!(Code, "version of the code", Code::ALL);
 
 impl Code {
     /// All versions with their names in experiment files.
@@ -60,7 +60,7 @@ pub enum SlatsLighting {
     OnGp,
 }
 
-parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
+pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
 
 impl SlatsLighting {
     /// Both choices with their names in experiment files.

@@ -26,7 +26,7 @@ impl Rotation {
     pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
 }
 
-parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
+pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 
 /// The settings of a swept display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

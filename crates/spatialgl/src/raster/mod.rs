@@ -37,7 +37,7 @@ impl Coverage {
     pub const ALL: [(&'static str, Self); 2] = [("sampled", Self::Sampled), ("connected", Self::Connected)];
 }
 
-parameters::named!(Coverage, "coverage rule", Coverage::ALL);
+pxpl5_sim::parameters::named!(Coverage, "coverage rule", Coverage::ALL);
 
 /// Counts of the work for one slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,5 +1,5 @@
 use glam::{DQuat, DVec3};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 use serde::{Deserialize, Serialize};
 
 use super::Predictor;
@@ -44,7 +44,7 @@ impl PredictorKind {
     }
 }
 
-parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map(|kind| (kind.name(), kind)));
+pxpl5_sim::parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map(|kind| (kind.name(), kind)));
 
 /// Settings of a predictor: the method, and its assumptions about the noise of reports and the motion of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

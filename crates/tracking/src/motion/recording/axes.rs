@@ -21,7 +21,7 @@ pub enum Axes {
     Robot,
 }
 
-parameters::named!(Axes, "convention for axes", Axes::NAMES);
+pxpl5_sim::parameters::named!(Axes, "convention for axes", Axes::NAMES);
 
 impl Axes {
     /// Every axis convention with its name in experiment files.

@@ -64,7 +64,7 @@ impl End {
     }
 }
 
-parameters::named!(End, "end of a recording", End::NAMES);
+pxpl5_sim::parameters::named!(End, "end of a recording", End::NAMES);
 
 /// The format of a recorded file, as far as the contents of the file do not show it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
