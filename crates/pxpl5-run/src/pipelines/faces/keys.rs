@@ -1,6 +1,6 @@
 //! Names and settings of the address recalculation pipelines.
 
-use super::faces::FacePolicy;
+use super::pipeline::FacePolicy;
 use crate::keys::{Key, KeyValues};
 use address_recalculation::priority::Falloff;
 
