@@ -2,7 +2,7 @@
 //! default into `docs/figures/`. The test `tests/timeline.rs` compares the files with its own drawings.
 
 use pxpl5::pipeline_figures::PIPELINE_FIGURES;
-use pxpl5::timeline::{TimelineOptions, svg};
+use pxpl5::views::timeline::{TimelineOptions, svg};
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,46 +1,129 @@
 //! Cycle-accurate emulator of Pixel-Planes 5, UNC's graphics multicomputer of 1989 to 1995, and of its low-latency
 //! rendering pipelines.
 //!
-//! An [`Experiment`] runs a [`Pipeline`] with a [`scene`] on a machine that a [`MachineConfig`] describes. The result
-//! is an [`Outcome`] with latencies, pictures and all observations.
+//! This page is a tour in five steps: build an experiment, run it, read the results, look into the machine, and extend
+//! the emulator. [`prelude`] has the names that most programs need.
+//!
+//! # Build
+//!
+//! An [`Experiment`] has a machine ([`MachineConfig`]), a pipeline ([`Pipeline`]) and a scene ([`scene::Scene`]). A
+//! [`Head`] adds the motion of the viewer's head, a tracker and a predictor.
 //!
 //! ```
-//! use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, scene};
+//! use pxpl5::prelude::*;
 //!
 //! // Twelve triangles that each cover the screen, on 13 graphics processors and 5 renderers (TR94).
-//! let trivial = scene::builtin("full-screen:12")?;
-//! let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), trivial);
-//! let outcome = experiment.fields(60).pixels(Pixels::Off).run()?;
-//! assert!((outcome.latency_fields().mean - 3.9).abs() < 0.1, "from the start of the first eye's TRANSFORM to the swap");
-//!
-//! // The published 3.4 fields are a mean over both eyes, each from the start of its own TRANSFORM (`figures::Reading`).
-//! let eyes = pxpl5::measure::summary(&outcome).eye_swap_latencies_ms;
-//! let mean = eyes.iter().sum::<f64>() / eyes.len() as f64 / outcome.field_ms();
-//! assert!((mean - 3.4).abs() < 0.1);
-//!
-//! // The same triangles under Slats: one field, always.
-//! let trivial = scene::builtin("full-screen:12")?;
-//! let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), trivial).fields(60).run()?;
-//! assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
-//! assert_eq!(outcome.report().missed_retraces, Some(0));
+//! let scene = scene::builtin("full-screen:12")?;
+//! let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! This crate re-exports the other crates. A user's crate needs only `use pxpl5::...`.
+//! # Run
 //!
-//! | crate | content |
-//! |---|---|
-//! | [`machine`], [`display`] | the boards and their connections; the interface of displays |
-//! | [`run`] | one experiment: [`Experiment`], [`Pipeline`], [`Head`], [`Registry`]; the outcome is data |
-//! | [`measure`] | evaluation of an outcome: [`Report`], latencies, errors in pixels, pictures |
-//! | [`analytic`] | results of experiments from formulas, without simulated events |
-//! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
-//! | [`oracle`] | ideal pictures: a renderer without parallelism and without time |
-//! | [`views`] | output for people: timelines, traces, tables, charts, report pages, films |
-//! | [`arp`] | a walk of a viewer through a scene, with a display that follows head rotation: policies, tears, warping, figures, pictures |
-//! | [`volume`] | scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
-//! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head |
-//! | [`firmware`] | types for writing a new pipeline |
+//! [`Experiment::run`] returns an [`Outcome`]: all observations, latencies and pictures. Pixels are computed when a
+//! picture is read ([`Pixels::Lazy`]).
+//!
+//! ```
+//! # use pxpl5::prelude::*;
+//! # let scene = scene::builtin("full-screen:12")?;
+//! # let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
+//! let outcome = experiment.run()?;
+//! assert!((outcome.latency_fields().mean - 3.9).abs() < 0.1, "from the start of the first eye's TRANSFORM to the swap");
+//! // The published 3.4 fields are a mean over both eyes, each from the start of its own TRANSFORM.
+//! let eyes = outcome.summary().eye_swap_latencies_ms;
+//! let mean = eyes.iter().sum::<f64>() / eyes.len() as f64 / outcome.field_ms();
+//! assert!((mean - 3.4).abs() < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Read
+//!
+//! The trait [`Measured`] reads an outcome: a [`Report`] of all numbers, one quantity by its name, the errors in pixels,
+//! and the pictures. A value that was not measured is `None`.
+//!
+//! ```
+//! # use pxpl5::prelude::*;
+//! // The same triangles under Slats: one field, always.
+//! let scene = scene::builtin("full-screen:12")?;
+//! let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
+//! assert_eq!(outcome.quantity("latency_fields.mean")?.map(f64::round), Some(1.0));
+//! assert_eq!(outcome.report().missed_retraces, Some(0));
+//! let left_eye = outcome.picture(Eye::Left).ok_or("pixels were computed")?;
+//! assert_eq!(left_eye.dimensions(), (640, 480));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Look
+//!
+//! [`Outcome::events`] lists what happened on each board. A [`Stepper`] runs an experiment in steps, and shows the state
+//! of the boards between two steps ([`looks`]).
+//!
+//! ```
+//! # use pxpl5::prelude::*;
+//! # let scene = scene::builtin("full-screen:12")?;
+//! # let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
+//! let mut stepper = experiment.stepper()?;
+//! stepper.step_board(Board::Renderer(0));
+//! println!("{}: {:?}", stepper.now(), stepper.renderer(0).ok_or("five renderers")?.busy);
+//! let outcome = stepper.finish()?;
+//! for event in outcome.events().filter(|event| event.board == Board::Renderer(0)).take(3) {
+//!     println!("{event}");
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Extend
+//!
+//! A parameter study is a closure over experiments, on all cores:
+//!
+#![cfg_attr(feature = "lab", doc = "```")]
+#![cfg_attr(not(feature = "lab"), doc = "```ignore")]
+//! # use pxpl5::prelude::*;
+//! use std::sync::Arc;
+//!
+//! let scene = Arc::new(scene::builtin("full-screen:12")?);
+//! let latencies = pxpl5::in_parallel(&[5, 10, 20], |renderers| {
+//!     let machine = MachineConfig::small_hmd().with_renderers(*renderers);
+//!     let experiment = Experiment::new(machine, RenderingControl::stereo(), scene.clone()).pixels(Pixels::Off);
+//!     experiment.fields(60).run().ok().and_then(|outcome| Some(outcome.latency()?.mean))
+//! });
+//! assert_eq!(latencies.len(), 3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A pipeline of your own implements [`Pipeline`] with the types of [`firmware`]. A display of your own implements
+//! [`device::Display`]. The guide has complete examples of both.
+//!
+//! # Modules and features
+//!
+//! Each item has one path. The names at the root are about experiments; the modules have the rest:
+//!
+//! | module | content | feature |
+//! |---|---|---|
+//! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head | |
+//! | [`looks`] | snapshots of boards during a run | |
+//! | [`firmware`], [`device`] | types for writing a pipeline or a display | |
+//! | [`run`], [`measure`] | further parts of an outcome and of its evaluation | |
+//! | [`analytic`] | results of experiments from formulas, without simulated events | |
+//! | [`oracle`] | ideal pictures: a renderer without parallelism and without time | |
+#![cfg_attr(
+    feature = "lab",
+    doc = "| [`lab`], [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`] | questions over many experiments, experiment files, saved runs | `lab` |"
+)]
+#![cfg_attr(
+    feature = "views",
+    doc = "| [`views`] | output for people: timelines, traces, tables, charts, report pages, films | `views` |"
+)]
+#![cfg_attr(
+    feature = "arp",
+    doc = "| [`arp`] | a walk of a viewer through a scene, with a display that follows head rotation: policies, tears, warping, figures | `arp` |"
+)]
+#![cfg_attr(
+    feature = "volume",
+    doc = "| [`volume`] | scenes as slices of a spinning volumetric display: settings, reports, variants, figures | `volume` |"
+)]
+//!
+//! All features are on by default. A crate that only runs experiments builds faster with `default-features = false`.
 //!
 //! Every number of the model has a unit, a provenance (published, derived, assumed) and a source.
 //! [`MachineConfig::parameters`] lists all of them.
@@ -50,53 +133,50 @@
 
 #![warn(missing_docs)]
 
+mod experiments;
+#[cfg(feature = "lab")]
+mod laboratory;
+mod machines;
+mod results;
+
+pub use experiments::*;
+#[cfg(feature = "lab")]
+pub use laboratory::*;
+pub use machines::*;
+pub use results::*;
+
+pub use glam;
+pub use image;
 pub use pphigs::oracle;
 pub use pxpl5_analytic as analytic;
+#[cfg(feature = "arp")]
 pub use pxpl5_arp as arp;
-pub use pxpl5_lab as lab;
-pub use pxpl5_machine as machine;
-pub use pxpl5_measure as measure;
-pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
+#[cfg(feature = "views")]
 pub use pxpl5_views as views;
+#[cfg(feature = "volume")]
 pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
 pub use tracking;
 
-pub use pphigs::RegionBinning;
-pub use pxpl5_framebuffer::{
-    FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, OledConfig, Panel, PanelConfig, PanelNumbers,
-};
-pub use pxpl5_gp::CodeVersion;
-pub use pxpl5_lab::{
-    ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
-    SnapshotError, Suitability, WhatIf, Workstation, compare, figures, growth, intervals, levels, limit,
-    pipeline_figures, readings, registry, rig, suitability, sweep, tracking_parameters, what_if,
-};
-pub use pxpl5_machine::{
-    Arrival, Board, ConfigError, EventDescription, LateRegion, Machine, MachineConfig, Observation, Optimization,
-    PRESETS, Parameter, Ports, Preset, Record, RunError, StageSpan, Swap, Traffic, Transfer,
-};
-pub use pxpl5_measure::{
-    Budget, CriticalPath, ErrorCauses, ErrorPart, EyeReport, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS,
-    LatencyCurve, LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, PathPart, Percentiles,
-    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, ReprojectionReport, Resource, Results,
-    Showing, SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
-};
-pub use pxpl5_run::{
-    Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Every, Experiment,
-    ExperimentError, FIELDS_RANGE, FinalResults, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError,
-    HeadPlace, HeadViews, Host, Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    ObserverFactory, Outcome, Pause, PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels,
-    Raster, Registry, RenderingControl, Reprojection, ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting,
-    Source, Statistics, Stepper, StreamingObserver, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES,
-    WINDOW_DEFINITION, Warp, out_of_range,
-};
-pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Standing, Value};
-pub use pxpl5_sim::{Span, Time, TraceHash};
-pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmSurfaces, results, timeline, trace_export};
-pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
-pub use slats::CopySchedule;
+/// Further parts of an outcome: faces around the head, updates, and texts about boards.
+pub mod run {
+    pub use pxpl5_run::{
+        ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
+        LATE_REGIONS_LISTED, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate, RequestedUpdates,
+        RotationLatency, SegmentedScene, ShownUpdate, SoFar, SurfaceLatency, Tally, Views, ViewsWanted, bit_of,
+        check_faces, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
+    };
+}
+
+/// Further parts of the evaluation of an outcome.
+pub mod measure {
+    pub use pxpl5_measure::{
+        FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,
+        RingUtilisation, RotationPart, Shares, Vdrt, latency_by_surface, latency_parts, pixel_errors, program, screen,
+        summary,
+    };
+}
 
 /// Snapshots of boards during a run: see [`Stepper`].
 pub mod looks {
@@ -108,36 +188,48 @@ pub mod looks {
 }
 
 /// Types for writing a pipeline: firmware on graphics processors, display lists, commands for renderers, and messages
-/// on the ring.
+/// on the ring. Names of other modules that every pipeline needs are included.
 pub mod firmware {
-    pub use pphigs::{
-        DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
-    };
-    pub use pxpl5_geometry::Viewport;
-    pub use pxpl5_gp::{
-        CodeUse, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket,
-    };
-    pub use pxpl5_renderer::{CommandKind, Layout, PixelArray};
+    pub use crate::looks::{PixelArray, Priority};
+    pub use crate::{PeriodNumber, PictureNumber, RegionBinning, ViewNumber};
+    pub use pphigs::{DisplayList, EyeView, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages};
+    pub use pxpl5_geometry::{Culling, Viewport};
+    pub use pxpl5_gp::{CodeUse, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Received, Stage, StageEdge, Ticket};
+    pub use pxpl5_machine::{FirmwareTable, NamedTable};
+    pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
-        Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber,
-        PictureNumber, RegionGrid, RegionId, ViewNumber, Word, swap_request,
+        Body, CommandList, CopyContent, CopyOrder, CopyPath, CopyTarget, FieldParity, Lines, NodeId, RegionGrid,
+        RegionId, Word, swap_request,
+    };
+}
+
+/// Types for writing a display, or a worker that computes pixels.
+pub mod device {
+    pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
+    pub use pxpl5_wire::display::{
+        BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
+        DoubleBuffer, Light, LightTimes, Scan, Surface,
     };
 }
 
 /// Names that most programs with this crate need: `use pxpl5::prelude::*`.
 pub mod prelude {
+    #[cfg(feature = "lab")]
+    pub use crate::laboratory::{ExperimentFile, Plan, Snapshot, WhatIf, in_parallel, registry, what_if};
     pub use crate::scene::{self, Scene};
     pub use crate::tracking::Pose;
     pub use crate::tracking::motion::{Motion, Recording, from_fn};
     pub use crate::tracking::predict::PredictorKind;
     pub use crate::tracking::tracker::TrackerConfig;
     pub use crate::{
-        Experiment, ExperimentError, ExperimentFile, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
-        Outcome, Pipeline, Pixels, RenderingControl, Report, Results, Slats, SurfaceId, WhatIf, registry, what_if,
+        Board, Experiment, ExperimentError, Eye, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
+        ObservedKind, Outcome, Pause, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl, Report, Results,
+        Slats, Stepper, SurfaceId,
     };
+    pub use glam::{DQuat, DVec3, Vec3};
 }
 
 /// Compiles and runs the examples of the README.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "lab", feature = "views", feature = "volume", feature = "arp"))]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -2,7 +2,7 @@
 //! use each message or count a fault, and continue. A new pipeline often sends such messages by mistake.
 
 use proptest::prelude::*;
-use pxpl5::display::{Display, DisplayContext, DisplayEvent};
+use pxpl5::device::{Display, DisplayContext, DisplayEvent};
 use pxpl5::firmware::{
     Body, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, Word,
 };

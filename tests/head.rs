@@ -10,11 +10,11 @@ use pxpl5::tracking::motion::{Motion, Pan, Still};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
+use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan,
     Raster, Viewpoint,
 };
-use pxpl5::{Film, FilmSurfaces};
 use std::sync::Arc;
 use support::video;
 

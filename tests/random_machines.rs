@@ -7,7 +7,7 @@
 //! cargo test --test random_machines reports` checks 1,000 reports.
 
 use pxpl5::firmware::NodeId;
-use pxpl5::results::quantities_csv;
+use pxpl5::views::results::quantities_csv;
 use pxpl5::{
     Experiment, ExperimentError, ExperimentFile, MachineConfig, Measure, Measured, Optimization, Outcome, Pixels,
     QUANTITIES, Results, RunError, Statistics, Time, Transfer, WARM_UP_PERIODS, Workstation, registry,
@@ -332,7 +332,7 @@ fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
 
 /// Checks that the table of pictures has exactly the pictures in the report's latency.
 fn assert_the_table_of_pictures_agrees(outcome: &Outcome, report: &Value, told: &str) {
-    let text = pxpl5::results::csv(outcome);
+    let text = pxpl5::views::results::csv(outcome);
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().expect("names").split(',').collect();
     let rows: Vec<BTreeMap<&str, &str>> =

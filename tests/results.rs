@@ -3,13 +3,13 @@
 use prost::Message;
 mod support;
 
-use pxpl5::results::{columns, csv};
-use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
+use pxpl5::views::results::{columns, csv};
+use pxpl5::views::trace_export::{Events, Trace, chrome, perfetto};
+use pxpl5::views::{Film, FilmError, FilmSurfaces};
 use pxpl5::{
     Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, Pixels,
     RenderingControl, Report, Slats, Viewpoint, scene, side_by_side,
 };
-use pxpl5::{Film, FilmError, FilmSurfaces};
 use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_sim::{Span, Time};
@@ -202,7 +202,7 @@ fn parquet_holds_what_csv_holds() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
     let mut bytes = Vec::new();
-    pxpl5::results::parquet(&stereo(), &mut bytes).expect("written");
+    pxpl5::views::results::parquet(&stereo(), &mut bytes).expect("written");
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).expect("Parquet");
     let metadata = reader.metadata().file_metadata().key_value_metadata().expect("there").clone();
     let hash = metadata.iter().find(|entry| entry.key == "pxpl5.config_hash").and_then(|entry| entry.value.clone());

@@ -121,5 +121,6 @@ fn optimizations_are_found_by_their_names() {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
     let error = "idleness".parse::<Optimization>().expect_err("no saving");
-    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
+    let expected = "expected idle-boards, transfers, empty-regions or repeated-code, found `idleness`";
+    assert_eq!(error.to_string(), expected);
 }

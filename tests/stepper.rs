@@ -1,12 +1,12 @@
 //! Tests that a run in pieces equals an uninterrupted run. Neither the division into pieces nor the reading of state
 //! changes the trace or a picture.
 
-use pxpl5::machine::Board;
-use pxpl5::run::{Pause, Stepper};
+use pxpl5::Board;
 use pxpl5::{
     Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
     SurfaceId, Time, registry, scene,
 };
+use pxpl5::{Pause, Stepper};
 use pxpl5_renderer::PixelArray;
 use std::collections::BTreeSet;
 

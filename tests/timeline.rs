@@ -4,7 +4,7 @@ use proptest::prelude::*;
 mod support;
 
 use pxpl5::pipeline_figures::PIPELINE_FIGURES;
-use pxpl5::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
+use pxpl5::views::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
 use pxpl5::{
     Experiment, MachineConfig, Measured, Outcome, PeriodNumber, PictureNumber, Pixels, RenderingControl, Slats, scene,
 };

@@ -1,6 +1,5 @@
 //! Short programs with the prelude alone: what a researcher writes first.
 
-use glam::{DQuat, DVec3, Vec3};
 use pxpl5::prelude::*;
 use std::sync::Arc;
 
@@ -33,26 +32,59 @@ fn a_cube_with_its_latency_by_stage_error_and_picture_takes_forty_lines() {
 /// The ring's channels by the number of renderers, as a table.
 #[test]
 fn a_table_over_renderers_takes_fifteen_lines() {
-    let rows = [5, 10, 20].map(|renderers| {
-        let machine = MachineConfig::small_hmd().with_renderers(renderers);
+    let rows = in_parallel(&[5, 10, 20], |renderers| {
+        let machine = MachineConfig::small_hmd().with_renderers(*renderers);
         let scene = scene::builtin("full-screen:12").expect("built in");
         let experiment = Experiment::new(machine, RenderingControl::stereo(), scene).fields(60).pixels(Pixels::Off);
         let outcome = experiment.run().expect("it fits");
         let channels = outcome.report().utilisation.expect("it ran").ring.channels;
-        (renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
+        (*renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
     });
     // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of 8 channels each
     // are 11.7 %, and commands and tokens come to that.
     assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
 }
 
+/// The events of a run are in the order of time, name their boards, and agree with the run's counters.
 #[test]
-fn names_are_read_as_they_are_written() {
-    for level in Level::ALL {
-        assert_eq!(level.to_string().parse(), Ok(level));
+fn events_name_their_boards_in_the_order_of_time() {
+    let scene = scene::builtin("full-screen:12").expect("built in");
+    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60);
+    let outcome = experiment.pixels(Pixels::Off).record_traffic(true).run().expect("it fits");
+    let events: Vec<_> = outcome.events().collect();
+    assert!(events.is_sorted_by_key(|event| event.time));
+    let count = |is_it: fn(&ObservedKind) -> bool| events.iter().filter(|event| is_it(&event.kind)).count();
+    let observed = outcome.observation();
+    assert_eq!(count(|kind| matches!(kind, ObservedKind::Stage { .. })), observed.marks.len());
+    assert_eq!(count(|kind| matches!(kind, ObservedKind::Arrived { .. })), observed.arrivals.len());
+    assert_eq!(count(|kind| matches!(kind, ObservedKind::Swapped { .. })), observed.swaps.len());
+    let messages = observed.traffic.as_ref().expect("recorded").transfers.len();
+    assert_eq!(count(|kind| matches!(kind, ObservedKind::Message { .. })), messages);
+    // Each kind has the boards that can do it: 13 graphics processors, 5 renderers and a stereo display.
+    for event in &events {
+        let fits = match (event.kind, event.board) {
+            (ObservedKind::Stage { .. }, Board::Host) => true,
+            (ObservedKind::Stage { .. }, Board::Gp(number)) => number < 13,
+            (ObservedKind::Copied { .. }, Board::Renderer(number)) => number < 5,
+            (ObservedKind::Arrived { .. } | ObservedKind::Swapped { .. }, Board::Display(number)) => number == 0,
+            (ObservedKind::Message { to, .. }, from) => to != from,
+            _ => false,
+        };
+        assert!(fits, "{event}");
     }
-    let error = "cycles".parse::<Level>().expect_err("no level").to_string();
-    assert_eq!(error, "expected analytic, transaction or cycle, found `cycles`");
+}
+
+#[test]
+fn a_quantity_is_read_by_its_name_and_a_wrong_name_has_a_nearest() {
+    let scene = scene::builtin("full-screen:12").expect("built in");
+    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
+    let outcome = experiment.run().expect("it fits");
+    // Slats has one NTSC field of latency: 1001/60000 s.
+    let latency = outcome.quantity("latency_ms.mean").expect("listed").expect("pictures were shown");
+    assert!((latency - 1001.0 / 60.0).abs() < 0.01, "{latency}");
+    assert_eq!(outcome.quantity("error_px.mean"), Ok(None), "no head is tracked");
+    let error = outcome.quantity("latency.mean").expect_err("not listed").to_string();
+    assert_eq!(error, "there is no quantity `latency.mean`; did you mean `latency_ms.mean`?");
 }
 
 /// Nothing is shown of a scene that is far too heavy, so there is no latency, and no number stands for it.

@@ -4,7 +4,7 @@
 use crate::cases::head;
 use crate::timing::Fallible;
 use cpu_time::ThreadTime;
-use pxpl5::machine::PixelWorker;
+use pxpl5::device::PixelWorker;
 use pxpl5::{Host, Pixels, Workstation};
 use pxpl5_wire::PixelSource;
 use std::collections::VecDeque;

@@ -2,6 +2,7 @@
 
 use crate::error::ArpError;
 use crate::face::Vector;
+use std::fmt;
 use std::io::BufRead;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -58,6 +59,19 @@ impl Picture {
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
         let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down
+    }
+}
+
+impl fmt::Display for Lens {
+    /// Writes the text that `FromStr` parses. A lens that is defined by a table has no such text and is written as
+    /// `table`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flat => f.write_str("flat"),
+            Self::Radial { k1, k2 } => write!(f, "radial:{k1}:{k2}"),
+            Self::Equidistant => f.write_str("equidistant"),
+            Self::Table(_) => f.write_str("table"),
+        }
     }
 }
 

@@ -19,6 +19,8 @@ pub enum Latch {
     Pixel,
 }
 
+pxpl5_sim::parameters::named!(Latch, "latch event", Latch::ALL);
+
 impl Latch {
     /// All events, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];

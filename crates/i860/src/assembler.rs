@@ -237,8 +237,14 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
 /// left out.
 ///
 /// # Errors
-/// Returns a description of the error in the text.
-pub fn instruction_word(text: &str, pc: u32) -> Result<u32, String> {
+///
+/// Returns [`AssemblyError`] with the file name `instruction` and line 1.
+pub fn instruction_word(text: &str, pc: u32) -> Result<u32, AssemblyError> {
+    let wrong = |reason| AssemblyError { file: "instruction".to_owned(), line: 1, reason };
+    word_at(text, pc).map_err(wrong)
+}
+
+fn word_at(text: &str, pc: u32) -> Result<u32, String> {
     let (word, rest) = split_word(text.trim());
     let instructions = pseudo(word, rest).unwrap_or_else(|| one(word, rest))?;
     let [(i, operands)] = instructions.as_slice() else {

@@ -29,6 +29,13 @@ pub enum RegionBinning {
     All,
 }
 
+impl RegionBinning {
+    /// Both choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
+}
+
+pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning::ALL);
+
 /// Parameters of drawing a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {

@@ -64,7 +64,7 @@ impl Load {
         times: &[u64],
     ) -> Result<Vec<Self>, ExperimentError> {
         // All GPs together hold the whole scene, so a single share suffices.
-        let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(display_list(experiment.scene())?);
         let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
         let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let share = Share::new(list, 0, 1);

@@ -84,7 +84,7 @@ impl Clumps {
         binning: RegionBinning,
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
-        let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(display_list(experiment.scene())?);
         let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
         let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
         let view = views(ViewNumber::FIRST, Time(0));

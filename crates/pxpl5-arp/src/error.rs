@@ -9,7 +9,7 @@ use tracking::SettingError;
 /// The reason why an experiment cannot run.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum ExperimentError {
+pub enum WalkError {
     /// The scene contains an object that cube faces cannot show.
     #[error("scene {scene}: expected {expected}, found {found}")]
     Scene {
@@ -59,7 +59,7 @@ pub enum ExperimentError {
     },
 }
 
-impl ExperimentError {
+impl WalkError {
     /// Returns true if the scene causes the error.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {

@@ -1,6 +1,6 @@
 //! A complete experiment: a viewer's walk through a scene, and the view at its end.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::hall::{path_of, scaled};
 use crate::look::Faces;
 use crate::pictures::ahead;
@@ -52,8 +52,8 @@ impl WalkOutcome {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if a setting is invalid or the scene is not supported.
-    pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, ExperimentError> {
+    /// Returns [`WalkError`] if a setting is invalid or the scene is not supported.
+    pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, WalkError> {
         // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;

@@ -29,14 +29,14 @@ pub use row::{Row, Standing};
 pub use rows::rows;
 pub use rules::Rules;
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 
 /// Runs all experiments and returns them with the rows of the comparison.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiments::run`].
-pub fn all() -> Result<(Experiments, Vec<Row>), ExperimentError> {
+pub fn all() -> Result<(Experiments, Vec<Row>), WalkError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);
     Ok((experiments, rows))

@@ -1,6 +1,6 @@
 //! Scaling of a hall, and routes of the viewer through it.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use glam::{DVec3, Vec3};
 use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -34,13 +34,13 @@ const MARGIN: f64 = 0.015;
 ///
 /// # Errors
 ///
-/// Returns [`ExperimentError::Scene`] if the scene has no path of its own. The scene's path defines the height of the
+/// Returns [`WalkError::Scene`] if the scene has no path of its own. The scene's path defines the height of the
 /// eye.
-pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
+pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, WalkError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
     if own.len() < 2 {
-        return Err(ExperimentError::Scene {
+        return Err(WalkError::Scene {
             scene: scene.name().to_owned(),
             expected: "a path to walk along, as gallery and gallery:full have",
             found: "none".to_owned(),
@@ -65,8 +65,8 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, ExperimentError> {
 ///
 /// # Errors
 ///
-/// Returns [`ExperimentError::Scene`] if the result is invalid, for example because coordinates are too large.
-pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, ExperimentError> {
+/// Returns [`WalkError::Scene`] if the result is invalid, for example because coordinates are too large.
+pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, WalkError> {
     let mut parts = scene.clone().into_parts();
     let factor = factor as f32;
     let on_plan = |place: Vec3| Vec3::new(place.x * factor, place.y, place.z * factor);
@@ -81,7 +81,7 @@ pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, ExperimentError> {
         sphere.centre = on_plan(sphere.centre);
     }
     parts.path.iter_mut().for_each(|corner| *corner = on_plan(*corner));
-    Scene::new(parts).map_err(|error| ExperimentError::Scene {
+    Scene::new(parts).map_err(|error| WalkError::Scene {
         scene: scene.name().to_owned(),
         expected: "a scene that can be scaled by walk.hall_scale",
         found: error.to_string(),

@@ -51,7 +51,7 @@ mod world;
 pub use address_recalculation;
 pub use compare::{ArpComparison, ComparedRow, compare, variant_count};
 pub use content::Content;
-pub use error::ExperimentError;
+pub use error::WalkError;
 pub use experiment::{WalkOutcome, WalkReport};
 pub use hall::{Route, path_of, scaled};
 pub use look::Faces;

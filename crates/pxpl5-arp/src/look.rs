@@ -1,7 +1,7 @@
 //! The view that the eye sees: cube faces are drawn from the memories' contents and then sampled by the display.
 
 use crate::cube_faces::Drawing;
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
 use glam::DQuat;
@@ -24,7 +24,7 @@ impl Faces {
     /// # Errors
     ///
     /// Fails in the same cases as [`crate::Settings::view`].
-    pub fn of(simulation: &Simulation<'_>) -> Result<Self, ExperimentError> {
+    pub fn of(simulation: &Simulation<'_>) -> Result<Self, WalkError> {
         let settings = simulation.settings();
         let view = settings.view()?;
         let mut drawing = Drawing::default();
@@ -58,8 +58,8 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError::Display`] if the lens or the orientation is invalid.
-    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), ExperimentError> {
+    /// Returns [`WalkError::Display`] if the lens or the orientation is invalid.
+    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), WalkError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
         let mut pixels = vec![0; (table.width() * table.height()) as usize];
@@ -73,7 +73,7 @@ impl Faces {
     /// # Errors
     ///
     /// Fails in the same cases as [`Faces::seen`].
-    pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), ExperimentError> {
+    pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), WalkError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
         let mut winners = vec![None; (table.width() * table.height()) as usize];

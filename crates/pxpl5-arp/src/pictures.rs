@@ -13,7 +13,7 @@ pub(crate) use views::without_lens;
 pub use views::{Views, difference};
 pub use wires::cuts_svg;
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::figures::{Experiments, gallery, looking_at};
 use crate::look::Faces;
 use crate::settings::{PolicyKind, Settings};
@@ -52,8 +52,8 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 ///
 /// # Errors
 ///
-/// Returns [`ExperimentError`] if a lens, scene or number is invalid. The built-in ones are valid.
-pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
+/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in ones are valid.
+pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
     let mut torn = Settings::CELLS.with_cells(experiments.fits[0].cell_m);
@@ -72,14 +72,14 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
 ///
 /// # Errors
 ///
-/// Returns [`ExperimentError`] if settings are invalid, or if they do not match the cells of the world.
+/// Returns [`WalkError`] if settings are invalid, or if they do not match the cells of the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
     settings: &Settings,
     m_per_s: f64,
     frames: u64,
-) -> Result<Vec<Picture>, ExperimentError> {
+) -> Result<Vec<Picture>, WalkError> {
     let eye = at_frames(path, m_per_s, settings.numbers.frame_hz);
     // Choose the frame and the direction of view.
     let is_cut = settings.policy == PolicyKind::Cells && settings.is_segmented;
@@ -124,7 +124,7 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 ///
 /// The faces include those of a reference memory, which holds the whole scene. Views are drawn with and without the
 /// lens.
-fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, ExperimentError> {
+fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, WalkError> {
     let faces = Faces::of(simulation)?;
     let mut pictures: Vec<Picture> = Vec::new();
     // Unfolded faces of each memory.
@@ -149,12 +149,7 @@ fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<V
 }
 
 /// Returns two views: one with a colour per object, and one with a colour per cell.
-fn tinted(
-    mut world: World,
-    settings: &Settings,
-    eye: DVec3,
-    orientation: DQuat,
-) -> Result<Vec<Picture>, ExperimentError> {
+fn tinted(mut world: World, settings: &Settings, eye: DVec3, orientation: DQuat) -> Result<Vec<Picture>, WalkError> {
     let mut pictures = Vec::new();
     for (tint, name) in [(Tint::Objects, "objects"), (Tint::Cells, "cells-seen")] {
         world.tint = tint;
@@ -180,7 +175,7 @@ fn best_tear_view(
     torn: &Settings,
     eye: &impl Fn(u64) -> DVec3,
     frames: u64,
-) -> Result<Option<(u64, DQuat)>, ExperimentError> {
+) -> Result<Option<(u64, DQuat)>, WalkError> {
     let mut simulation = Simulation::new(world, torn)?;
     let mut best = (0, DQuat::IDENTITY, 0);
     for frame in 0..frames {
@@ -221,7 +216,7 @@ fn gaps(
     frame: u64,
     eye: &impl Fn(u64) -> DVec3,
     orientation: DQuat,
-) -> Result<Vec<Picture>, ExperimentError> {
+) -> Result<Vec<Picture>, WalkError> {
     let mut both = Vec::new();
     // Draw the frame torn, warped and uncut.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
@@ -242,7 +237,7 @@ fn shown<'a>(
     settings: &Settings,
     frames: std::ops::Range<u64>,
     eye: &impl Fn(u64) -> DVec3,
-) -> Result<Simulation<'a>, ExperimentError> {
+) -> Result<Simulation<'a>, WalkError> {
     let mut simulation = Simulation::new(world, settings)?;
     for frame in frames {
         simulation.frame(eye(frame))?;

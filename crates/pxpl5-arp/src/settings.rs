@@ -1,7 +1,7 @@
 //! Settings of an experiment.
 
 use crate::cube_faces::{CubeView, DepthRange};
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,8 @@ pub enum PolicyKind {
     #[default]
     Cells,
 }
+
+pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 
 impl PolicyKind {
     /// All policies, each with its name on the command line.
@@ -116,14 +118,14 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError`] describes the expected and the found value.
-    pub fn check(&self) -> Result<(), ExperimentError> {
+    /// [`WalkError`] describes the expected and the found value.
+    pub fn check(&self) -> Result<(), WalkError> {
         self.numbers.check()?;
         self.display.check()?;
         if let SourceKind::Timed { triangles_per_s } = self.source
             && (triangles_per_s.is_nan() || triangles_per_s <= 0.0)
         {
-            return Err(ExperimentError::Rate(triangles_per_s));
+            return Err(WalkError::Rate(triangles_per_s));
         }
         Ok(())
     }
@@ -142,7 +144,7 @@ impl Settings {
     /// # Errors
     ///
     /// Fails in the same cases as [`DepthRange::new`].
-    pub fn view(&self) -> Result<CubeView, ExperimentError> {
+    pub fn view(&self) -> Result<CubeView, WalkError> {
         Ok(CubeView { geometry: self.display.geometry(), depth: DepthRange::new(NEAR_M, FAR_M)? })
     }
 

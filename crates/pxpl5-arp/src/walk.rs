@@ -1,6 +1,6 @@
 //! A complete walk of the viewer through a scene, with counters of updates and draws.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::settings::{Settings, SourceKind};
 use crate::simulation::{FrameOutcome, Simulation};
 use crate::tears::Tears;
@@ -109,7 +109,7 @@ pub fn walk(
     settings: &Settings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
-) -> Result<WalkTally, ExperimentError> {
+) -> Result<WalkTally, WalkError> {
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
@@ -119,7 +119,7 @@ pub(crate) fn walked<'a>(
     settings: &Settings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
-) -> Result<(Simulation<'a>, WalkTally), ExperimentError> {
+) -> Result<(Simulation<'a>, WalkTally), WalkError> {
     let mut simulation = Simulation::new(world, settings)?;
     let mut tally = WalkTally {
         frames: 0,

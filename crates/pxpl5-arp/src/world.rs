@@ -1,7 +1,7 @@
 //! A scene whose objects are cut at the borders of cells.
 
 use crate::cube_faces::Corner;
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use address_recalculation::priority::{Cell, Segmentation};
 use glam::DVec3;
 use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
@@ -72,9 +72,9 @@ impl World {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
+    /// Returns [`WalkError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
     /// cannot be cut.
-    pub fn new(scene: &Scene, side_m: f64) -> Result<Self, ExperimentError> {
+    pub fn new(scene: &Scene, side_m: f64) -> Result<Self, WalkError> {
         check_is_static(scene)?;
         let mut world = Self {
             vertices: Vec::new(),
@@ -92,7 +92,7 @@ impl World {
         Ok(world)
     }
 
-    fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), ExperimentError> {
+    fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), WalkError> {
         let first = self.vertices.len() as u32;
         let own = &scene.vertices()[structure.vertices.clone()];
         // Cut the structure, and interpolate the colours of the vertices that cuts created.
@@ -169,9 +169,9 @@ fn distinct(number: u64) -> u32 {
     packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
 }
 
-fn check_is_static(scene: &Scene) -> Result<(), ExperimentError> {
+fn check_is_static(scene: &Scene) -> Result<(), WalkError> {
     let refused = |expected: &'static str, found: String| {
-        Err(ExperimentError::Scene { scene: scene.name().to_owned(), expected, found })
+        Err(WalkError::Scene { scene: scene.name().to_owned(), expected, found })
     };
     if !scene.spheres().is_empty() {
         return refused("triangles alone: faces have no spheres", format!("{} spheres", scene.spheres().len()));

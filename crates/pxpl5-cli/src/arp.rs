@@ -9,7 +9,7 @@ mod texel;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
-use pxpl5::arp::ExperimentError;
+use pxpl5::arp::WalkError;
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
 /// region warping).
@@ -53,8 +53,8 @@ pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
     }
 }
 
-impl From<ExperimentError> for CliError {
-    fn from(error: ExperimentError) -> Self {
+impl From<WalkError> for CliError {
+    fn from(error: WalkError) -> Self {
         if error.is_of_scene() { Self::failure(error) } else { Self::usage(error) }
     }
 }

@@ -133,7 +133,7 @@ fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
     // Names of files start with the experiment, so that three runs share a folder.
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
-        folder.put(&format!("{}-pictures.csv", run.name), pxpl5::results::csv(&run.outcome).as_bytes())?;
+        folder.put(&format!("{}-pictures.csv", run.name), pxpl5::views::results::csv(&run.outcome).as_bytes())?;
         folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report).as_bytes())?;
     }
     let runs: Vec<Value> = runs.iter().map(entry).collect();

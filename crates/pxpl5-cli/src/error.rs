@@ -1,9 +1,8 @@
 //! Errors that end a command, with their exit codes.
 
-use pxpl5::compare::CompareError;
 use pxpl5::lab::manifest::ManifestError;
 use pxpl5::sweep::SweepError;
-use pxpl5::{ExperimentError, FileError, SnapshotError};
+use pxpl5::{ExperimentError, FileError, SnapshotError, StudyError};
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -79,11 +78,11 @@ impl From<ManifestError> for CliError {
     }
 }
 
-impl From<CompareError> for CliError {
-    fn from(error: CompareError) -> Self {
+impl From<StudyError> for CliError {
+    fn from(error: StudyError) -> Self {
         match error {
-            CompareError::Settings(error) => error.into(),
-            CompareError::Files(error) => error.into(),
+            StudyError::File(error) => error.into(),
+            StudyError::Files(error) => error.into(),
             _ => Self::usage(error),
         }
     }

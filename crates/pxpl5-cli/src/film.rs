@@ -10,7 +10,8 @@ use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
-use pxpl5::{Eye, Film, FilmSurfaces, PeriodNumber, Pixels};
+use pxpl5::views::{Film, FilmSurfaces};
+use pxpl5::{Eye, PeriodNumber, Pixels};
 use std::path::PathBuf;
 
 /// Write a viewer's picture as an animated PNG at the true field rate.

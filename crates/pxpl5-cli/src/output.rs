@@ -7,10 +7,10 @@ use crate::error::CliError;
 use batch::Batch;
 use image::RgbImage;
 use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
-use pxpl5::results::{origin, origin_lines};
 use pxpl5::sweep::ROWS_FILE;
-use pxpl5::timeline::TimelineOptions;
 use pxpl5::views::png_bytes;
+use pxpl5::views::results::{origin, origin_lines};
+use pxpl5::views::timeline::TimelineOptions;
 use pxpl5::{Outcome, Report};
 use std::fs::{self, File};
 use std::io;
@@ -305,7 +305,7 @@ fn folder_of(file: &Path) -> &Path {
 
 /// Returns a timeline as SVG. An XML comment states the origin of the run: the settings that reproduce it.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
-    let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
+    let svg = pxpl5::views::timeline::svg(outcome, &TimelineOptions::default());
     let origin: String = origin_lines(report, "").chars().filter(|c| *c == '\n' || !is_forbidden(*c)).collect();
     // XML comments must not contain two hyphens in a row.
     let comment = format!("<!--\n{}-->\n", origin.replace("--", "- -"));

@@ -50,7 +50,7 @@ pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
             let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
             let listed = manifest.as_ref().map(|manifest| manifest.read_file(folder, name)).transpose()?.flatten();
             let bytes = listed.map_or_else(|| fs::read(&path), Ok).map_err(|error| problem(error.to_string()))?;
-            let text = text_of(&bytes).map_err(problem)?;
+            let text = text_of(&bytes).map_err(|error| problem(error.to_string()))?;
             return read(text).map(Some).map_err(problem);
         }
     }
@@ -65,7 +65,7 @@ fn unfinished(folder: &Path) -> Result<Option<ResultRows>, CliError> {
     }
     let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
     let bytes = fs::read(&path).map_err(|error| problem(error.to_string()))?;
-    stored_comparison(text_of(&bytes).map_err(problem)?).map(Some).map_err(problem)
+    stored_comparison(text_of(&bytes).map_err(|error| problem(error.to_string()))?).map(Some).map_err(problem)
 }
 
 /// Returns the folder of a results file, or the path itself if it is a folder.

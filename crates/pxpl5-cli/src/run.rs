@@ -9,8 +9,8 @@ use crate::snapshot::{How, Simulated, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, warn};
 use clap::Args;
-use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
+use pxpl5::views::results::{origin_lines, quantities_csv};
 use pxpl5::{
     ExperimentFile, HeadReport, Keep, Level, Measured, Optimization, Outcome, Plan, Report, Results, SurfaceId, WhatIf,
     what_if,
@@ -238,7 +238,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     // Files that the experiment's `output` keys turn off are left out.
     if plan.output.csv {
         folder.put("results.csv", quantities_csv(&plan.measure, results).as_bytes())?;
-        folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
+        folder.put("pictures.csv", pxpl5::views::results::csv(outcome).as_bytes())?;
     }
     #[cfg(feature = "parquet")]
     folder.put("pictures.parquet", &parquet(outcome)?)?;
@@ -277,6 +277,6 @@ pub(crate) fn pictures(
 #[cfg(feature = "parquet")]
 fn parquet(outcome: &Outcome) -> Result<Vec<u8>, CliError> {
     let mut bytes = Vec::new();
-    pxpl5::results::parquet(outcome, &mut bytes).map_err(CliError::failure)?;
+    pxpl5::views::results::parquet(outcome, &mut bytes).map_err(CliError::failure)?;
     Ok(bytes)
 }

@@ -11,7 +11,7 @@ use crate::snapshot::Simulated;
 use crate::terminal::{print, progress, warn};
 use crate::too_heavy::too_heavy;
 use clap::{Args, ValueEnum};
-use pxpl5::trace_export::{Trace, chrome, perfetto};
+use pxpl5::views::trace_export::{Trace, chrome, perfetto};
 use pxpl5::{ExperimentError, PeriodNumber};
 use std::path::{Path, PathBuf};
 

@@ -25,6 +25,13 @@ pub enum Culling {
     Back,
 }
 
+impl Culling {
+    /// Both choices with their names.
+    pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
+}
+
+pxpl5_sim::parameters::named!(Culling, "culling", Culling::ALL);
+
 /// A view of the world for one picture, ready to transform primitives.
 #[derive(Clone, Debug)]
 pub struct Transform {

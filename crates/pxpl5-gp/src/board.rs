@@ -7,7 +7,7 @@ use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::{BreakpointHit, CodeVersion, Processor};
 use crate::timing::GpTiming;
-use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
+use pxpl5_sim::{Context, Phase, Span, Time};
 use pxpl5_wire::{Message, NodeId, PeriodNumber};
 use std::cell::RefCell;
 use std::collections::{BTreeSet, VecDeque};
@@ -335,9 +335,8 @@ impl GpBoard {
     /// Returns the condition that the board waits for, for a deadlock report. The wait of the foreground program is
     /// preferred to the wait of the interrupt program.
     #[must_use]
-    pub fn blocked(&self, name: &str) -> Option<Blocked> {
-        let waits_for = self.wait()?.what.to_owned();
-        Some(Blocked { board: name.to_owned(), waits_for })
+    pub fn blocked(&self) -> Option<&'static str> {
+        Some(self.wait()?.what)
     }
 
     /// Returns true if the board waits for an event other than a retrace. Only another board can cause such an event.
@@ -484,7 +483,6 @@ mod tests {
         let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);
         bench.run(|event, context| board.handle(event, context));
-        let blocked = board.blocked("GP 9").expect("it waits");
-        assert_eq!(blocked.waits_for, "a message");
+        assert_eq!(board.blocked(), Some("a message"));
     }
 }

@@ -24,6 +24,21 @@ pub enum Stage {
     Swap,
 }
 
+impl Stage {
+    /// All stages with their names in reports, in the order of the pipelines.
+    pub const ALL: [(&str, Self); 7] = [
+        ("sample", Self::Sample),
+        ("send", Self::Send),
+        ("edit", Self::Edit),
+        ("transform", Self::Transform),
+        ("render", Self::Render),
+        ("copy", Self::Copy),
+        ("swap", Self::Swap),
+    ];
+}
+
+pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
+
 /// The begin or the end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -33,6 +48,13 @@ pub enum StageEdge {
     /// The last work or the last message of the stage is complete.
     End,
 }
+
+impl StageEdge {
+    /// Both edges with their names.
+    pub const ALL: [(&str, Self); 2] = [("begin", Self::Begin), ("end", Self::End)];
+}
+
+pxpl5_sim::parameters::named!(StageEdge, "edge of a stage", StageEdge::ALL);
 
 /// A record that a stage began or ended at a certain time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

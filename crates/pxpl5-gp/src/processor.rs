@@ -27,6 +27,9 @@ pub enum CodeVersion {
 }
 
 impl CodeVersion {
+    /// All versions, the slowest first.
+    pub const ALL: [Self; 3] = [Self::Unoptimised, Self::Compiled, Self::Scheduled];
+
     /// Returns the name of the version in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -37,6 +40,12 @@ impl CodeVersion {
         }
     }
 }
+
+pxpl5_sim::parameters::named!(
+    CodeVersion,
+    "version of the code",
+    CodeVersion::ALL.map(|version| (version.name(), version))
+);
 
 /// The reason why a program on the i860 did not return.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -280,7 +280,7 @@ impl Rig {
         part: impl Fn(DisplayList) -> DisplayList,
     ) -> Result<Self, ExperimentError> {
         let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
-        let list = Arc::new(part(display_list(&scene).map_err(ExperimentError::Scene)?));
+        let list = Arc::new(part(display_list(&scene)?));
         let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
         let (views, _) = views(&scene, 1, hmd, 2);
         let share = Share::new(list, 0, boards);

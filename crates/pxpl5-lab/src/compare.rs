@@ -7,7 +7,6 @@
 
 mod bootstrap;
 mod contender;
-mod error;
 mod gallery;
 mod interval;
 mod length;
@@ -26,7 +25,6 @@ pub use crate::head_names::{
 };
 pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::usual_rows;
-pub use error::CompareError;
 pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;

@@ -127,7 +127,7 @@ impl ExperimentFile {
         let bytes =
             std::fs::read(path).map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
         let text = pxpl5_sim::parameters::text_of(&bytes)
-            .map_err(|reason| FileError::Syntax { place: file.clone(), reason })?;
+            .map_err(|error| FileError::Syntax { place: file.clone(), reason: error.to_string() })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         self.parse_in(text, &file, &folder)
     }

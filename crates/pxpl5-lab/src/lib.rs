@@ -28,6 +28,7 @@ pub mod application_time;
 pub mod code_times;
 pub mod compare;
 pub mod diff;
+mod error;
 pub mod estimate;
 mod experiment_file;
 pub mod figures;
@@ -47,12 +48,14 @@ mod suitability;
 pub mod sweep;
 mod what_if;
 
+pub use error::StudyError;
 pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
     Settings, tracking_parameters,
 };
 pub use head_names::{MotionError, PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
+pub use parallel::map as in_parallel;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};

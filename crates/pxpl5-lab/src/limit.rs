@@ -15,7 +15,7 @@
 mod over;
 mod search;
 
-pub use over::{OverError, OverLimit, OverQuery, STEPS, Values};
+pub use over::{OverLimit, OverQuery, STEPS, Values};
 pub use search::{Hints, Limit, about, most};
 
 use crate::experiment_file::{FileError, Plan, SceneChoice};

@@ -5,10 +5,17 @@ use rayon::prelude::*;
 
 /// Applies `run` to every item in parallel, and returns the results in the order of the items.
 ///
+/// The items are independent experiments or their settings. All cores of the host work. A run may start further
+/// parallel runs.
+///
+/// ```
+/// assert_eq!(pxpl5_lab::in_parallel(&[1, 2, 3], |n| n * n), [1, 4, 9]);
+/// ```
+///
 /// # Panics
 ///
 /// Panics when `run` panics.
-pub(crate) fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -> Vec<O> {
+pub fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -> Vec<O> {
     items.par_iter().with_max_len(1).map(&run).collect()
 }
 

@@ -1,8 +1,8 @@
 //! The diagrams of pipelines in the papers, redrawn from simulations.
 
-use crate::experiment_file::{ExperimentFile, FileError};
-use pxpl5_run::{ExperimentError, Outcome};
-use thiserror::Error;
+use crate::error::StudyError;
+use crate::experiment_file::ExperimentFile;
+use pxpl5_run::Outcome;
 
 /// A diagram of a pipeline in a paper, with the experiment that redraws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,25 +72,13 @@ pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     },
 ];
 
-/// Error while a diagram of a pipeline is redrawn.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum PipelineFigureError {
-    /// The experiment of the diagram is invalid.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The experiment of the diagram yields no result.
-    #[error(transparent)]
-    Experiment(#[from] ExperimentError),
-}
-
 impl PipelineFigure {
     /// Runs the experiment that redraws the diagram.
     ///
     /// # Errors
     ///
-    /// Returns [`PipelineFigureError`].
-    pub fn run(&self) -> Result<Outcome, PipelineFigureError> {
+    /// Returns [`StudyError`].
+    pub fn run(&self) -> Result<Outcome, StudyError> {
         let plan = ExperimentFile::parse(self.experiment, self.name)?.resolve()?;
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }

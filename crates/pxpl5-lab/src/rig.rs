@@ -12,21 +12,21 @@
 //! the board that starts the frame. The pipeline's records give the system's own time stamps.
 
 use crate::Workstation;
+use crate::error::StudyError;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use thiserror::Error;
 use tracking::motion::Still;
 use tracking::predict::PredictorKind;
-use tracking::rig::{InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace};
+use tracking::rig::{InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, ScopeTrace};
 use tracking::time::nearest_ps;
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
@@ -44,49 +44,6 @@ pub struct Rig {
     pub passes: usize,
 }
 
-/// Error of a measurement with the rig.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum RigRunError {
-    /// The settings of the tracker are invalid.
-    #[error(transparent)]
-    Tracker(#[from] HeadError),
-    /// The pipeline cannot run on the machine.
-    #[error(transparent)]
-    Run(#[from] ExperimentError),
-    /// The tracker reported no low point of the pendulum, or the photodiode saw no bright pixel.
-    #[error(transparent)]
-    Rig(#[from] RigError),
-    /// A requested frame was not shown completely.
-    #[error(
-        "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
-    )]
-    NotShown {
-        /// Number of frames that were requested at low points.
-        expected: usize,
-        /// Number of requested frames that were shown completely, according to the pipeline's records.
-        found: usize,
-    },
-    /// The photodiode cannot tell when a frame of this pipeline appears.
-    #[error("expected a pipeline whose frames a photodiode can distinguish, found {pipeline}: {reason}; {definition}")]
-    NoFrames {
-        /// Name of the pipeline.
-        pipeline: &'static str,
-        /// Reason why a step from dark to bright under the photodiode is not the start of a new frame.
-        reason: &'static str,
-        /// The pipeline's own definition of the time at which a picture is due.
-        definition: &'static str,
-    },
-    /// The line of the photodiode lies below the screen.
-    #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
-    Photodiode {
-        /// Number of lines on the screen.
-        lines: u32,
-        /// Number of the photodiode's line in the settings, counted from 0.
-        found: u32,
-    },
-}
-
 /// Default number of low points to measure. They fall anywhere in a field. With this number, the mean wait for a
 /// retrace is known to a fifth of a field.
 pub const PASSES: usize = 24;
@@ -102,8 +59,8 @@ impl Rig {
     ///
     /// # Errors
     ///
-    /// Returns [`RigRunError`] if the pipeline cannot run on the machine, or does not show the requested frames.
-    pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, RigRunError> {
+    /// Returns [`StudyError`] if the pipeline cannot run on the machine, or does not show the requested frames.
+    pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, StudyError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
         // The pendulum determines when frames start.
@@ -135,7 +92,7 @@ impl Rig {
         machine: &MachineConfig,
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
-    ) -> Result<Experiment, RigRunError> {
+    ) -> Result<Experiment, StudyError> {
         // Even sightings make a light frame, odd ones a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
@@ -160,10 +117,10 @@ impl Rig {
 }
 
 /// Returns an error for a pipeline in which a photodiode on the screen cannot tell when a frame appears.
-fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), RigRunError> {
+fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
-        Err(RigRunError::NoFrames { pipeline: pipeline.name(), reason, definition })
+        Err(StudyError::NoFrames { pipeline: pipeline.name(), reason, definition })
     };
     if pipeline.draws_faces() {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
@@ -237,7 +194,7 @@ impl Photodiode {
 
     /// Runs an experiment and samples the photodiode. A run that ends before it can fill the pipeline with pictures is
     /// accepted here.
-    fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
+    fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, StudyError> {
         self.check(experiment.build()?.record().display())?;
         let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
         let result = experiment.run_stopping(&every, |period, machine| {
@@ -253,11 +210,11 @@ impl Photodiode {
         }
     }
 
-    fn check(&self, display: &dyn Display) -> Result<(), RigRunError> {
+    fn check(&self, display: &dyn Display) -> Result<(), StudyError> {
         let lines =
             display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(PeriodNumber::FIRST).1);
         let found = self.line;
-        if found < lines { Ok(()) } else { Err(RigRunError::Photodiode { lines, found }) }
+        if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
     }
 
     /// Samples the photodiode in a period that has ended.
@@ -293,7 +250,7 @@ fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u3
 }
 
 /// Returns the first complete picture after each reported low point, according to the pipeline's records.
-fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, RigRunError> {
+fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, StudyError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =
         sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
@@ -306,7 +263,7 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
     }
     let found: Vec<_> = sightings.iter().filter_map(|sighting| first.get(&sighting.arrives_ps).copied()).collect();
     let expected = sightings.len();
-    if found.len() == expected { Ok(found) } else { Err(RigRunError::NotShown { expected, found: found.len() }) }
+    if found.len() == expected { Ok(found) } else { Err(StudyError::NotShown { expected, found: found.len() }) }
 }
 
 /// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering

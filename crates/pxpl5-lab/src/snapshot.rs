@@ -14,8 +14,9 @@
 
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_machine::Machine;
-use pxpl5_run::{Fingerprint, Registry};
+use pxpl5_run::{Experiment, ExperimentError, Fingerprint, Registry, Stepper};
 use pxpl5_scene::Scene;
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -48,8 +49,9 @@ pub struct Snapshot {
     pub events: u64,
     /// Fingerprint of the scene's contents.
     pub scene_hash: String,
-    /// Text of the experiment file.
-    pub experiment: String,
+    /// Text of the experiment file. `None` for an experiment that was built in code.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<String>,
 }
 
 /// Error that makes a snapshot unusable.
@@ -94,6 +96,28 @@ pub enum SnapshotError {
         /// Error of the experiment file in the snapshot.
         error: Box<FileError>,
     },
+    /// The snapshot is of an experiment that was built in code, so the snapshot has no text of an experiment file.
+    #[error("{file}: the experiment was built in code; build it again and call Snapshot::resume")]
+    BuiltInCode {
+        /// Name of the file, as given by the user.
+        file: String,
+    },
+    /// The run has not just reached the start of a period, so it cannot be saved.
+    #[error("expected a run at the start of a period of the first display, found {now}, {since} after the start")]
+    WithinPeriod {
+        /// Simulated time of the run.
+        now: Time,
+        /// Time since the start of the current period.
+        since: Span,
+    },
+    /// The experiment cannot run again up to the saved period.
+    #[error("{file}: {error}")]
+    Run {
+        /// Name of the file, as given by the user.
+        file: String,
+        /// Error of the experiment.
+        error: Box<ExperimentError>,
+    },
     /// The repeated run differs from the saved run.
     #[error(
         "{file}: the repeated run differs from the saved run (version {version}): {what}: expected {expected}, found {found}"
@@ -137,8 +161,59 @@ impl Snapshot {
             trace_hash: machine.record().trace_hash().to_string(),
             events: machine.events(),
             scene_hash: Fingerprint::of_scene(scene).to_string(),
-            experiment: plan.settings().to_string(),
+            experiment: Some(plan.settings().to_string()),
         }
+    }
+
+    /// Creates a snapshot of a run of an experiment that was built in code.
+    ///
+    /// The file does not describe such an experiment. [`Snapshot::resume`] needs the same experiment again.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`SnapshotError::WithinPeriod`] unless the run has just reached the start of a period
+    /// ([`Stepper::step_period`]).
+    pub fn of_stepper(stepper: &Stepper) -> Result<Self, SnapshotError> {
+        let (experiment, machine, field) = (stepper.experiment(), stepper.machine(), stepper.period());
+        let start = machine.record().tick(field);
+        // An event at the start of the period may have been handled already.
+        if stepper.now() != start || stepper.last().is_some() {
+            return Err(SnapshotError::WithinPeriod { now: stepper.now(), since: stepper.now().since(start) });
+        }
+        Ok(Self {
+            schema: Self::SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            machine: experiment.config().preset.clone(),
+            config_hash: experiment.config_hash().to_string(),
+            level: experiment.modelling_level().name().to_owned(),
+            seed: experiment.motion_seed(),
+            field,
+            time_ps: start.0,
+            trace_hash: machine.record().trace_hash().to_string(),
+            events: machine.events(),
+            scene_hash: Fingerprint::of_scene(experiment.scene()).to_string(),
+            experiment: None,
+        })
+    }
+
+    /// Repeats the run of an experiment up to the saved period, and returns the run at this point. Error messages call
+    /// the snapshot's file `file`.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run is not the saved one, and
+    /// [`SnapshotError::Run`] if the experiment cannot run.
+    pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, SnapshotError> {
+        // A different experiment is refused before its run.
+        self.check_scene(experiment.scene(), file)?;
+        let found = experiment.config_hash().to_string();
+        self.same("the fingerprint of the settings", &self.config_hash, found, file)?;
+        let fault = |error| SnapshotError::Run { file: file.to_owned(), error: Box::new(error) };
+        let mut stepper = experiment.stepper().map_err(fault)?;
+        // A run that ended early differs in its hash.
+        stepper.run_to(Time(self.time_ps));
+        self.check_machine(stepper.machine(), file)?;
+        Ok(stepper)
     }
 
     /// Returns the text of the snapshot's file.
@@ -185,7 +260,8 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Experiment`] if this version cannot read the experiment.
+    /// Returns [`SnapshotError::Experiment`] if this version cannot read the experiment, and
+    /// [`SnapshotError::BuiltInCode`] if the snapshot has no experiment file.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
         self.experiment_with(crate::registry(), file)
     }
@@ -197,8 +273,10 @@ impl Snapshot {
     /// Fails in the same cases as [`Self::experiment`].
     pub fn experiment_with(&self, registry: Arc<Registry>, file: &str) -> Result<ExperimentFile, SnapshotError> {
         let text = format!("{file}: experiment");
+        let experiment =
+            self.experiment.as_ref().ok_or_else(|| SnapshotError::BuiltInCode { file: file.to_owned() })?;
         ExperimentFile::with(registry)
-            .and_parse(&self.experiment, &text)
+            .and_parse(experiment, &text)
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
@@ -247,8 +325,14 @@ struct Sealed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DQuat, DVec3};
+    use pxpl5_machine::MachineConfig;
     use pxpl5_measure::Measured;
-    use pxpl5_run::Pixels;
+    use pxpl5_run::{Head, Pixels, RenderingControl};
+    use tracking::Pose;
+    use tracking::motion::from_fn;
+    use tracking::predict::PredictorKind;
+    use tracking::tracker::TrackerConfig;
 
     /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
@@ -288,6 +372,46 @@ mod tests {
         });
         assert!(compared);
         assert_eq!(outcome.expect("it runs").report().trace_hash, end);
+    }
+
+    /// An experiment that no file describes: its motion is a function.
+    fn built_in_code(rate: f64) -> Experiment {
+        let turn = move |s: f64| Pose { position: DVec3::ZERO, orientation: DQuat::from_rotation_y(rate * s) };
+        let head = Head::new(Arc::new(from_fn(turn)), TrackerConfig::fastrak(), PredictorKind::None, 1);
+        let scene = pxpl5_scene::builtin("full-screen:12").expect("built in");
+        let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene);
+        experiment.fields(40).pixels(Pixels::Off).head(head.expect("a head"))
+    }
+
+    #[test]
+    fn a_run_built_in_code_continues_from_its_snapshot_to_the_same_end() {
+        let experiment = built_in_code(0.5);
+        let mut stepper = experiment.stepper().expect("it begins");
+        (0..9).for_each(|_| drop(stepper.step_period()));
+        let snapshot = Snapshot::of_stepper(&stepper).expect("at a retrace");
+        let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
+        assert_eq!(snapshot.field, PeriodNumber(9));
+        let end = stepper.finish().expect("it runs").record().trace_hash();
+        let resumed = snapshot.resume(&experiment, "s").expect("the same");
+        assert_eq!(resumed.period(), PeriodNumber(9));
+        assert_eq!(resumed.finish().expect("it runs").record().trace_hash(), end);
+        // There is no text from which the experiment could be made.
+        assert!(matches!(snapshot.experiment("s"), Err(SnapshotError::BuiltInCode { .. })));
+    }
+
+    #[test]
+    fn another_experiment_and_a_run_within_a_period_are_refused() {
+        let experiment = built_in_code(0.5);
+        let mut stepper = experiment.stepper().expect("it begins");
+        stepper.step_period();
+        let snapshot = Snapshot::of_stepper(&stepper).expect("at a retrace");
+        for other in [experiment.clone().fields(41), built_in_code(0.25)] {
+            let error = snapshot.resume(&other, "s").expect_err("another experiment").to_string();
+            assert!(error.contains("not the one that was saved"), "{error}");
+        }
+        stepper.step_event();
+        let error = Snapshot::of_stepper(&stepper).expect_err("after an event").to_string();
+        assert!(error.starts_with("expected a run at the start of a period"), "{error}");
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //! of the other.
 
 use pphigs::FrameView;
-use pxpl5_lab::rig::{Rig, RigRunError};
+use pxpl5_lab::StudyError;
+use pxpl5_lab::rig::Rig;
 use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
@@ -19,7 +20,7 @@ fn rig(tracker: TrackerConfig, passes: usize) -> Rig {
     Rig { passes, ..Rig::assumed(noiseless(tracker)) }
 }
 
-fn measure(tracker: TrackerConfig, pipeline: Arc<dyn Pipeline>, passes: usize) -> Result<Measurement, RigRunError> {
+fn measure(tracker: TrackerConfig, pipeline: Arc<dyn Pipeline>, passes: usize) -> Result<Measurement, StudyError> {
     rig(tracker, passes).measure(&MachineConfig::small_hmd(), pipeline)
 }
 
@@ -67,7 +68,7 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
             panic!("{pipeline} is measured")
         };
         let said = refused.to_string();
-        assert!(matches!(refused, RigRunError::NoFrames { .. }) && said.contains(reason), "{said}");
+        assert!(matches!(refused, StudyError::NoFrames { .. }) && said.contains(reason), "{said}");
     }
 }
 
@@ -156,7 +157,7 @@ fn an_error_of_one_side_is_found_by_the_other() {
     // The light of the last frame never appears. The rig either reports so, or the latencies disagree.
     match with(Fault::StaleViews) {
         Ok(stale) => assert!(!stale.agrees(), "{stale:?}"),
-        Err(error) => assert!(matches!(error, RigRunError::Rig(_)), "{error}"),
+        Err(error) => assert!(matches!(error, StudyError::Rig(_)), "{error}"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Names of boards, and descriptions of their events.
 
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::TextError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -60,13 +61,13 @@ impl fmt::Display for EventDescription {
 }
 
 impl FromStr for Board {
-    type Err = String;
+    type Err = TextError;
 
     /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let refused = format!("expected host, ring, gp N, renderer N or display N, found {text:?}");
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        let refused = TextError::whole("host, ring, gp N, renderer N or display N", text);
         let text = text.to_ascii_lowercase();
         // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());
@@ -112,7 +113,10 @@ mod tests {
         let others = ["", "gp", "host 3", "ring0", "GP -1", "renderer x", "7", "display 99999999999999999999999"];
         for wrong in spaces.into_iter().chain(others) {
             let error = wrong.parse::<Board>().expect_err(wrong);
-            assert_eq!(error, format!("expected host, ring, gp N, renderer N or display N, found {wrong:?}"));
+            assert_eq!(
+                error.to_string(),
+                format!("expected host, ring, gp N, renderer N or display N, found {wrong:?}")
+            );
         }
     }
 }

@@ -21,6 +21,7 @@ mod facts;
 mod host_line;
 mod machine;
 mod observation;
+mod observed_event;
 mod pixels;
 mod ports;
 mod preset;
@@ -34,11 +35,12 @@ pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Paramete
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
 pub use observation::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
+pub use observed_event::{ObservedEvent, ObservedKind};
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
 pub use record::Record;
-pub use run_error::RunError;
+pub use run_error::{Blocked, RunError};
 pub use savings::Optimization;
 pub use traffic::{Traffic, Transfer};
 

@@ -21,14 +21,14 @@ use crate::host_line::HostLine;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
-use crate::run_error::RunError;
+use crate::run_error::{Blocked, RunError};
 use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
-use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
+use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::display::{DisplayContext, DisplayEvent};
-use pxpl5_wire::{Body, Message, NodeId, PeriodNumber};
+use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -345,7 +345,7 @@ impl Machine {
     /// Returns true if a program, a renderer or a message waits for something other than a retrace.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
-            || self.record.renderers.iter().any(|renderer| renderer.blocked("").is_some())
+            || self.record.renderers.iter().any(|renderer| renderer.blocked().is_some())
             || !self.record.ring.waiting().is_empty()
     }
 
@@ -363,17 +363,28 @@ impl Machine {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns the boards that wait. Each entry describes the event that the board waits for.
+    /// Returns the boards that wait, with the condition and the board that each one waits for.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
-        let processors = self
-            .processors
-            .iter()
-            .enumerate()
-            .filter_map(|(i, board)| board.blocked(&Board::of_processor(i).to_string()));
-        let renderers = self.record.renderers.iter().enumerate();
-        let renderers = renderers.filter_map(|(i, board)| board.blocked(&Board::Renderer(i).to_string()));
-        processors.chain(renderers).chain(self.record.ring.blocked()).collect()
+        let Record { ports, renderers, ring, .. } = &self.record;
+        // Programs: a program that waits for a message does not state who sends the message.
+        let processors = self.processors.iter().enumerate().filter_map(|(port, processor)| {
+            let waits_for = processor.blocked()?.to_owned();
+            Some(Blocked { board: Board::of_processor(port), waits_on: None, waits_for })
+        });
+        // Renderers that a copy stops.
+        let renderers = renderers.iter().enumerate().filter_map(|(number, renderer)| {
+            let CopyTarget { frame_buffer, region, .. } = renderer.blocked()?;
+            let waits_for = format!("frame buffer at node {} to take region {}", frame_buffer.0, region.0);
+            Some(Blocked { board: Board::Renderer(number), waits_on: Some(ports.board(frame_buffer)), waits_for })
+        });
+        // Messages.
+        let messages = ring.waiting().into_iter().map(|message| Blocked {
+            board: ports.board(message.source),
+            waits_on: message.waits_on().map(|node| ports.board(node)),
+            waits_for: message.waits_for(|node| ports.board(node)),
+        });
+        processors.chain(renderers).chain(messages).collect()
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
@@ -424,7 +435,7 @@ impl Machine {
             }
             // An invalid message stops the machine.
             RingOutput::Refused { error, .. } => {
-                self.failure = Some(RunError::Ring { time: now, reason: error.to_string() });
+                self.failure = Some(RunError::Ring { time: now, error });
             }
         }
     }
@@ -470,7 +481,7 @@ impl Machine {
         }
         // A program that failed stops the machine.
         if let Some(fault) = processor.fault().cloned() {
-            self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
+            self.failure = Some(RunError::Fault { board: Board::of_processor(board), time: now, fault });
         }
         // Record the time stamps that its programs have set.
         let Record { hash, observation, .. } = &mut self.record;

@@ -84,6 +84,8 @@ pub const PRESETS: [Preset; 7] = [
     },
 ];
 
+pxpl5_sim::parameters::named!(Preset, "machine", PRESETS.map(|preset| (preset.name, preset)));
+
 impl MachineConfig {
     /// Returns the machine of a preset.
     ///

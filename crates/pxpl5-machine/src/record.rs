@@ -1,5 +1,6 @@
 //! State of a machine's boards, and all observations of a run.
 
+use crate::board::Board;
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
 use crate::ports::Ports;
@@ -141,6 +142,12 @@ impl Record {
     #[must_use]
     pub fn tick(&self, period: PeriodNumber) -> Time {
         self.display().tick(period)
+    }
+
+    /// Returns the start of a period of a display. Other boards count the periods of the first display.
+    pub(crate) fn period_start(&self, board: Board, period: PeriodNumber) -> Time {
+        let display = if let Board::Display(number) = board { number } else { 0 };
+        self.displays[display].tick(period)
     }
 
     /// Returns the hash of all traced events of the run.

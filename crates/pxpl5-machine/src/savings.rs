@@ -1,8 +1,5 @@
 //! Optimizations of the simulator that change no result.
 
-use std::fmt;
-use std::str::FromStr;
-
 /// An optimization of the simulator. An experiment can disable each one (`Experiment::without`).
 ///
 /// No optimization changes a time or a visible pixel: `tests/savings.rs` repeats runs with each one disabled. `cargo
@@ -49,19 +46,4 @@ impl Optimization {
     }
 }
 
-impl fmt::Display for Optimization {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Optimization {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|saving| saving.name() == text)
-            .ok_or_else(|| format!("expected {}, found {text:?}", Self::ALL.map(Self::name).join(", ")))
-    }
-}
+pxpl5_sim::parameters::named!(Optimization, "optimization", Optimization::ALL.map(|one| (one.name(), one)));

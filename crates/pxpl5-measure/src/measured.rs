@@ -5,14 +5,26 @@ use crate::errors::PixelErrors;
 use crate::head_results::pixel_errors;
 use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
 use crate::pictures::picture;
+use crate::quantity::Measure;
 use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};
+use pxpl5_sim::parameters::NameError;
 use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].
 pub trait Measured {
     /// Returns all results as numbers.
     fn report(&self) -> Report;
+
+    /// Returns the value of the quantity with the name `name`, one of [`QUANTITIES`](crate::QUANTITIES). Returns `None`
+    /// if the run has no value for the quantity.
+    ///
+    /// Some quantities need the whole report. To read several quantities, create [`Results`](crate::Results) once.
+    ///
+    /// # Errors
+    ///
+    /// [`NameError`] with the most similar name if no quantity is called `name`.
+    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError>;
 
     /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
@@ -32,6 +44,10 @@ pub trait Measured {
 impl Measured for Outcome {
     fn report(&self) -> Report {
         Report::of(self)
+    }
+
+    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError> {
+        Ok(Measure::named(name)?.of_outcome(self))
     }
 
     fn latency_parts(&self) -> Vec<LatencyParts> {

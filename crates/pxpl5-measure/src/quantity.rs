@@ -6,7 +6,9 @@ use crate::resource::Resource;
 use crate::summary::summary;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
-use pxpl5_sim::parameters::nearest;
+use pxpl5_sim::parameters::{NameError, find_named};
+use std::fmt;
+use std::str::FromStr;
 
 /// A quantity that can be measured, selected by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,10 +199,9 @@ impl Measure {
     ///
     /// # Errors
     ///
-    /// The valid name that is most similar to `name`.
-    pub fn named(name: &str) -> Result<Self, &'static str> {
-        let found = QUANTITIES.iter().find(|quantity| quantity.name == name).map(Self);
-        found.ok_or_else(|| nearest(name, QUANTITIES.iter().map(|q| q.name)).unwrap_or_default())
+    /// [`NameError`] with the most similar name if no quantity is called `name`.
+    pub fn named(name: &str) -> Result<Self, NameError> {
+        find_named("quantity", name, QUANTITIES.iter().map(|quantity| (quantity.name, Self(quantity))))
     }
 
     /// Returns the quantities measured by default: latencies, update rate and missed retraces.
@@ -247,6 +248,34 @@ impl Measure {
             Value::OfRun(value) => results.run.as_ref().and_then(|(outcome, report)| value(outcome, report)),
         };
         value.filter(|value| value.is_finite())
+    }
+}
+
+impl Measure {
+    /// Returns the value for a run, or `None` if the run has no finite value for this quantity.
+    ///
+    /// [`Measure::of`] avoids a second report if a report already exists.
+    #[must_use]
+    pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
+        let value = match self.0.value {
+            Value::OfSummary(value) => Some(value(&summary(outcome))),
+            Value::OfRun(value) => value(outcome, &Report::of(outcome)),
+        };
+        value.filter(|value| value.is_finite())
+    }
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Measure {
+    type Err = NameError;
+
+    fn from_str(name: &str) -> Result<Self, NameError> {
+        Self::named(name)
     }
 }
 

@@ -40,6 +40,22 @@ impl Resource {
         Self::Other,
     ];
 
+    /// Returns the name of the resource in reports and quantities.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Retrace => "retrace",
+            Self::Ports => "ports",
+            Self::Ring => "ring",
+            Self::Renderers => "renderers",
+            Self::BackingStore => "backing_store",
+            Self::Transform => "transform",
+            Self::Messages => "messages",
+            Self::Host => "host",
+            Self::Other => "other",
+        }
+    }
+
     /// Returns a text that describes the work of the resource while a picture waits for it.
     #[must_use]
     pub const fn about(self) -> &'static str {
@@ -56,3 +72,5 @@ impl Resource {
         }
     }
 }
+
+pxpl5_sim::parameters::named!(Resource, "resource", Resource::ALL.map(|resource| (resource.name(), resource)));

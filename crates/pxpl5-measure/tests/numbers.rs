@@ -137,7 +137,8 @@ fn a_quantity_is_found_by_its_whole_name_and_a_wrong_one_is_answered_by_the_near
         let measure = Measure::named(quantity.name).expect("listed");
         assert_eq!((measure.name(), measure.definition()), (quantity.name, quantity.definition));
     }
-    assert_eq!(Measure::named("latency_ms.meen"), Err("latency_ms.mean"));
+    let error = Measure::named("latency_ms.meen").expect_err("no quantity");
+    assert_eq!(error.to_string(), "there is no quantity `latency_ms.meen`; did you mean `latency_ms.mean`?");
     assert_ne!(Measure::named("events"), Measure::named("pictures"));
     assert_eq!(Measure::named("events"), Measure::named("events"));
     let usual: Vec<&str> = Measure::usual().iter().map(Measure::name).collect();

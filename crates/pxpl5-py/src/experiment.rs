@@ -7,7 +7,7 @@ use crate::outcome::Outcome;
 use crate::policy::{Asked, PolicyPipeline};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use pxpl5::machine::PixelWorker;
+use pxpl5::device::PixelWorker;
 use pxpl5::{
     Experiment as Native, ExperimentError, Host, Keep, Measure, PeriodNumber, Pipeline, Plan, Results, Workstation,
     levels, registry,

@@ -7,11 +7,11 @@ use crate::table::{Column, Table};
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
 use pxpl5::firmware::{Layout, PictureNumber};
-use pxpl5::measure::{Measure, Measured, side_by_side};
-use pxpl5::results::{columns, origin, rows};
-use pxpl5::timeline::{TimelineOptions, svg};
 use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
+use pxpl5::views::results::{columns, origin, rows};
+use pxpl5::views::timeline::{TimelineOptions, svg};
+use pxpl5::{Measure, Measured, side_by_side};
 use pxpl5::{PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -114,8 +114,7 @@ impl Outcome {
 
     /// Returns the value of a measured quantity by its name, or None if the run does not have the quantity.
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
-        let measure = Measure::named(name)
-            .map_err(|nearest| wrong_setting(format!("there is no quantity `{name}`; did you mean `{nearest}`?")))?;
+        let measure = Measure::named(name).map_err(wrong_setting)?;
         Ok(measure.of(self.results(py)?))
     }
 
@@ -274,7 +273,7 @@ impl Outcome {
 }
 
 /// Returns column `i` of the table of pictures, with its values from `rows`.
-fn column_of(i: usize, column: &pxpl5::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
+fn column_of(i: usize, column: &pxpl5::views::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)
 }

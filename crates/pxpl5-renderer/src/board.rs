@@ -7,7 +7,7 @@ use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::look::{RendererSnapshot, SentLists};
 use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
-use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
+use pxpl5_sim::{Context, Phase, Span, Time};
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CopyOrder, CopyPath, CopyTarget,
     MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
@@ -478,10 +478,7 @@ impl Renderer {
 
     /// Returns the frame buffer and region that the board waits for, if a copy blocks the board.
     #[must_use]
-    pub fn blocked(&self, name: &str) -> Option<Blocked> {
-        let order = self.copying.filter(|_| self.fifo.is_blocked())?;
-        let waits_for =
-            format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
-        Some(Blocked { board: name.to_owned(), waits_for })
+    pub fn blocked(&self) -> Option<CopyTarget> {
+        Some(self.copying.filter(|_| self.fifo.is_blocked())?.target)
     }
 }

@@ -5,7 +5,7 @@ mod support;
 
 use pxpl5_renderer::{CommandKind, RendererStats, RendererTiming};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, CommandRun, CopyContent, CopyPath};
+use pxpl5_wire::{Body, CommandRun, CopyContent, CopyPath, NodeId, RegionId};
 use support::{Bench, CYCLE, DISPLAY, HOST, NODE, WORD, list, order, run};
 
 const BEGIN: Time = Time(1_000_000_000);
@@ -88,9 +88,8 @@ fn what_stands_behind_a_copy_from_pixel_memory_waits_for_its_last_pixel() {
     bench.run();
     let look = bench.device.look(BEGIN + Span::from_us(100));
     assert_eq!((look.stands_at_copy, look.copying, look.busy), (true, Some(orders[0]), Span::ZERO));
-    let blocked = bench.device.blocked("renderer 3").expect("it waits");
-    assert_eq!(blocked.board, "renderer 3");
-    assert_eq!(blocked.waits_for, "frame buffer at node 9 to take region 1");
+    let target = bench.device.blocked().expect("it waits");
+    assert_eq!((target.frame_buffer, target.region), (NodeId(9), RegionId(1)));
     bench.delivered(sent_at);
     bench.run();
     assert_eq!(bench.device.busy(), TRIANGLE);
@@ -99,7 +98,7 @@ fn what_stands_behind_a_copy_from_pixel_memory_waits_for_its_last_pixel() {
     bench.run();
     let look = bench.device.look(sent_at + Span::from_us(600));
     assert_eq!((look.stands_at_copy, look.copying), (false, None));
-    assert_eq!(bench.device.blocked("renderer 3"), None);
+    assert_eq!(bench.device.blocked(), None);
 }
 
 /// Returns the times at which the first pixels of each region were sent.
@@ -219,5 +218,5 @@ fn a_delivery_of_nothing_is_no_copy() {
     bench.delivered(BEGIN);
     bench.run();
     assert_eq!(bench.device.stats(), RendererStats::default());
-    assert!(bench.sent().is_empty() && bench.device.blocked("renderer 3").is_none());
+    assert!(bench.sent().is_empty() && bench.device.blocked().is_none());
 }

@@ -3,7 +3,7 @@
 use crate::channels::{ChannelSnapshot, MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use pxpl5_sim::parameters::ParameterTable;
-use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
+use pxpl5_sim::{Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::collections::VecDeque;
 
@@ -231,12 +231,6 @@ impl Ring {
         let mut all: Vec<_> = self.channels.all_unanswered().chain(heads).collect();
         all.sort_by_key(|message| message.source);
         all
-    }
-
-    /// Returns the waiting messages as lines of a deadlock report. Ports are written as the names of their boards.
-    #[must_use]
-    pub fn blocked(&self) -> Vec<Blocked> {
-        self.waiting().iter().map(|message| message.blocked(port_name)).collect()
     }
 
     fn check_node(&self, node: NodeId) -> Result<(), RingError> {
@@ -526,10 +520,6 @@ impl Ring {
             _ => WaitReason::Arbitration,
         }
     }
-}
-
-fn port_name(node: NodeId) -> String {
-    format!("ring port {}", node.0)
 }
 
 /// Outputs the delivery of a message to a receiver that accepts every word immediately. The sender is notified too.

@@ -1,8 +1,9 @@
 //! Statistics of the ring and lists of waiting messages, for reports.
 
 use crate::RingError;
-use pxpl5_sim::{Blocked, Span, Time};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
+use std::fmt;
 
 /// Statistics of all messages that have ended.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -68,9 +69,20 @@ pub enum WaitReason {
 }
 
 impl WaitingMessage {
-    /// Returns the waiting message as a line of a deadlock report. `name` must return the name of a board.
+    /// Returns the port that must act before the message can continue: the port that occupies or reserves the receiver,
+    /// or else the receiver. Returns `None` if the message waits for the ring.
     #[must_use]
-    pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
+    pub const fn waits_on(&self) -> Option<NodeId> {
+        match self.reason {
+            WaitReason::Acceptance => Some(self.destination),
+            WaitReason::DestinationBusy(by) | WaitReason::DestinationReserved(by) => Some(by),
+            WaitReason::Channel | WaitReason::Arbitration => None,
+        }
+    }
+
+    /// Returns the condition that the message waits for, for a deadlock report. `name` must return the name of a board.
+    #[must_use]
+    pub fn waits_for<N: fmt::Display>(&self, name: impl Fn(NodeId) -> N) -> String {
         let to = name(self.destination);
         let words = self.words;
         let what = match self.reason {
@@ -82,6 +94,6 @@ impl WaitingMessage {
             WaitReason::Channel => format!("a free channel to {to} for {words} words"),
             WaitReason::Arbitration => format!("arbitration to {to} for {words} words"),
         };
-        Blocked { board: name(self.source), waits_for: format!("{what} since {}", self.since) }
+        format!("{what} since {}", self.since)
     }
 }

@@ -329,13 +329,18 @@ fn a_deadlock_report_names_each_waiting_board_and_the_cause() {
     bench.feed(us(6), Phase::Arrive, RingEvent::Request(request(3, 3, 9, 30)));
     bench.feed(us(7), Phase::Arrive, RingEvent::Request(request(4, 4, 9, 40)));
     bench.run(|event, context| ring.handle(event, context));
-    let lines: Vec<_> = ring.blocked().into_iter().map(|b| format!("{} waits for {}", b.board, b.waits_for)).collect();
+    let name = |node: NodeId| format!("port {}", node.0);
+    let waiting = ring.waiting();
+    let lines: Vec<_> =
+        waiting.iter().map(|wait| format!("{} waits for {}", name(wait.source), wait.waits_for(name))).collect();
+    let on: Vec<_> = waiting.iter().map(pxpl5_ring::WaitingMessage::waits_on).collect();
+    assert_eq!(on, [Some(NodeId(0)), Some(NodeId(9)), Some(NodeId(3))], "the port that must act");
     assert_eq!(
         lines,
         [
-            "ring port 2 waits for ring port 1, reserved for an unfinished transfer of ring port 0, to take 20 words since 5.000000 us",
-            "ring port 3 waits for ring port 9 to accept 30 words sent since 6.000000 us",
-            "ring port 4 waits for ring port 9, busy with ring port 3, to take 40 words since 7.000000 us",
+            "port 2 waits for port 1, reserved for an unfinished transfer of port 0, to take 20 words since 5.000000 us",
+            "port 3 waits for port 9 to accept 30 words sent since 6.000000 us",
+            "port 4 waits for port 9, busy with port 3, to take 40 words since 7.000000 us",
         ]
     );
 }

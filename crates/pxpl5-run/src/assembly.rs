@@ -69,7 +69,7 @@ impl Experiment {
         let period = config.host.view_period_ns * 1_000;
         let cut = self.pipeline.cut(&self.scene, config)?;
         let scene = cut.as_ref().map_or(&self.scene, |cut| &cut.scene);
-        let list = Arc::new(display_list_for(scene, self.pipeline.shading()).map_err(ExperimentError::Scene)?);
+        let list = Arc::new(display_list_for(scene, self.pipeline.shading())?);
         let (views, wanted) = views(scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let starts = frame_starts(config.host, self.seed);

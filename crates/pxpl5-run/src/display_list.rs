@@ -1,5 +1,6 @@
 //! Converts scenes to display lists for graphics processors and to views for hosts.
 
+use crate::error::ExperimentError;
 use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews, Shading,
@@ -11,19 +12,23 @@ use pxpl5_wire::ViewNumber;
 use pxpl5_wire::display::Surface;
 use std::sync::Arc;
 
-/// Returns the scene's primitives as a display list. Returns an error if the scene is empty, or if it has more moving
-/// structures than the host can send.
-pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
+/// Returns the scene's primitives as a display list.
+///
+/// # Errors
+///
+/// [`ExperimentError::Scene`] if the scene is empty, or if it has more moving structures than the host can send.
+pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     // Check that the scene has primitives and that its edits fit into a frame message.
     if scene.triangles().is_empty() && scene.spheres().is_empty() {
-        return Err(format!("scene {} has neither triangles nor spheres", scene.name()));
+        let reason = format!("scene {} has neither triangles nor spheres", scene.name());
+        return Err(ExperimentError::Scene(reason));
     }
     let edits = scene.edits_at(0).len();
     if edits > MAX_EDITS {
-        return Err(format!(
+        return Err(ExperimentError::Scene(format!(
             "scene {} moves {edits} structures a frame; the host sends at most {MAX_EDITS}",
             scene.name()
-        ));
+        )));
     }
     // Convert structures, spheres and vertices to the types of the display list.
     let structure = |s: &pxpl5_scene::Structure| DisplayStructure {
@@ -55,7 +60,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
 }
 
 /// Returns the scene's primitives as a display list for a pipeline with the given shading.
-pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, String> {
+pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, ExperimentError> {
     let list = display_list(scene)?;
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
 }

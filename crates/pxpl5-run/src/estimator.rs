@@ -50,6 +50,8 @@ impl Cause {
     }
 }
 
+pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
+
 /// Time span of the reports that a predictor receives before each request with separate reports, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 

@@ -30,6 +30,13 @@ pub enum Pixels {
     All,
 }
 
+impl Pixels {
+    /// All choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
+}
+
+pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
+
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
@@ -218,6 +225,9 @@ impl Experiment {
     ///
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
+    ///
+    /// Hidden, because the estimates change error messages only. Plans of experiment files set them.
+    #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
         self.estimates = estimates;

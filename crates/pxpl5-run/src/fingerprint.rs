@@ -4,7 +4,9 @@
 use glam::Vec3;
 use pxpl5_scene::{Frame, HeadPath, Hinge, Lighting, Scene, Sphere, Structure, Vertex};
 use std::fmt::{self, Write};
+use std::num::ParseIntError;
 use std::ops::Range;
+use std::str::FromStr;
 
 const OFFSET_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
@@ -164,6 +166,15 @@ impl Write for Fingerprint {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         self.add(text.as_bytes());
         Ok(())
+    }
+}
+
+impl FromStr for Fingerprint {
+    type Err = ParseIntError;
+
+    /// Parses the 32 hexadecimal digits that `Display` writes.
+    fn from_str(text: &str) -> Result<Self, ParseIntError> {
+        u128::from_str_radix(text, 16).map(Self)
     }
 }
 

@@ -49,17 +49,10 @@ pub enum HeadPlace {
 
 impl HeadPlace {
     /// All meanings with their names in experiment files.
-    pub const NAMES: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
-
-    /// Returns the name in experiment files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::World => "world",
-        }
-    }
+    pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
+
+pxpl5_sim::parameters::named!(HeadPlace, "meaning of head poses", HeadPlace::ALL);
 
 /// A head with its motion, tracker and predictor, and with the raster correction of its display.
 #[derive(Clone)]
@@ -290,7 +283,7 @@ impl Head {
             Numbers::Given | Numbers::ToBeTuned => {}
         }
         if self.place != HeadPlace::Scene {
-            hash.setting("place", self.place.name());
+            hash.setting("place", &self.place.to_string());
         }
         // Settings that affect evaluation and display, then the given reports.
         if let Some(metres) = self.judge_at_m {

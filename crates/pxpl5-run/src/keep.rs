@@ -23,3 +23,11 @@ pub enum Keep {
     /// Traffic is available only for the last periods.
     Recent,
 }
+
+impl Keep {
+    /// All choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] =
+        [("everything", Self::Everything), ("statistics", Self::Statistics), ("recent", Self::Recent)];
+}
+
+pxpl5_sim::parameters::named!(Keep, "choice of observations", Keep::ALL);

@@ -21,8 +21,6 @@
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::str::FromStr;
 
 /// The level of modelling, from formulas to single instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -51,28 +49,7 @@ impl Level {
     }
 }
 
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// An error for a name that is not a level of modelling.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected analytic, transaction or cycle, found `{found}`")]
-pub struct UnknownLevel {
-    /// The name that was given.
-    pub found: String,
-}
-
-impl FromStr for Level {
-    type Err = UnknownLevel;
-
-    fn from_str(text: &str) -> Result<Self, UnknownLevel> {
-        let found = Self::ALL.into_iter().find(|level| level.name() == text);
-        found.ok_or_else(|| UnknownLevel { found: text.to_owned() })
-    }
-}
+pxpl5_sim::parameters::named!(Level, "level", Level::ALL.map(|level| (level.name(), level)));
 
 /// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed
 /// stay.

@@ -73,7 +73,7 @@ pub use host::{BareHost, Host};
 pub use keep::Keep;
 pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
 pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
-pub use level::{Level, UnknownLevel};
+pub use level::Level;
 pub use outcome::Outcome;
 pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};

@@ -13,7 +13,7 @@ use crate::summary::Summary;
 use crate::sums::FinalResults;
 use crate::tally::{Tally, of_picture};
 use crate::window::{Closed, Window, field_ms};
-use pxpl5_machine::{Observation, Record, StageSpan};
+use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
 use std::fmt;
@@ -209,6 +209,13 @@ impl Outcome {
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
+    }
+
+    /// Returns the observed events of the run in the order of time, each with the name of its board.
+    ///
+    /// A run that keeps only statistics ([`Keep`](crate::Keep)) returns only the events of its last periods.
+    pub fn events(&self) -> impl Iterator<Item = ObservedEvent> {
+        self.record.observed_events().into_iter()
     }
 
     /// Returns all stages of all pictures. The times of COPY are measured at the displays.

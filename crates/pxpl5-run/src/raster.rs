@@ -1,8 +1,10 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use crate::reprojection::Reprojection;
+use pxpl5_sim::parameters::TextError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::str::FromStr;
 
 /// Correction that a display applies to a picture while it scans its frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +31,16 @@ impl Raster {
             Self::Vdrt => Some(Reprojection::VDRT),
             Self::Reprojected(reprojection) => Some(reprojection),
         }
+    }
+}
+
+impl FromStr for Raster {
+    type Err = TextError;
+
+    /// Parses `plain`, `vdrt`, or a device such as `rotation every line, 100 us`.
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        let named = Self::ALL.iter().find(|(name, _)| *name == text).map(|(_, raster)| *raster);
+        named.map_or_else(|| text.parse().map(Self::Reprojected), Ok)
     }
 }
 

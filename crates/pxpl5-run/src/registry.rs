@@ -6,9 +6,11 @@ use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
-use pxpl5_sim::parameters::nearest;
+use pxpl5_sim::parameters::{NameError, find_named};
 use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;
+use std::fmt;
+use std::str::FromStr;
 use std::sync::Arc;
 
 /// The condition that a pipeline must meet for a scene to count as drawn in time.
@@ -47,6 +49,8 @@ impl TestScene {
         }
     }
 }
+
+pxpl5_sim::parameters::named!(TestScene, "test scene", TestScene::ALL.map(|scene| (scene.name(), scene)));
 
 /// Criterion by which a search finds the largest number of triangles that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +105,37 @@ pub struct DisplayEntry {
     pub name: &'static str,
     /// Function that returns the display's configuration with the values from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,
+}
+
+impl fmt::Display for PipelineEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl FromStr for PipelineEntry {
+    type Err = NameError;
+
+    /// Returns the entry of a built-in pipeline, without an analytic model. [`Registry::pipeline`] also finds other
+    /// pipelines.
+    fn from_str(name: &str) -> Result<Self, NameError> {
+        Registry::of_papers().pipeline(name).copied()
+    }
+}
+
+impl fmt::Display for DisplayEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name)
+    }
+}
+
+impl FromStr for DisplayEntry {
+    type Err = NameError;
+
+    /// Returns the entry of a built-in display. [`Registry::display`] also finds other displays.
+    fn from_str(name: &str) -> Result<Self, NameError> {
+        Registry::of_papers().display(name).copied()
+    }
 }
 
 /// All known pipelines and displays.
@@ -165,20 +200,18 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// Returns the most similar valid name if no pipeline has the name.
-    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, &'static str> {
-        let found = self.pipelines.iter().find(|entry| entry.name == name);
-        found.ok_or_else(|| nearest(name, self.pipelines.iter().map(|entry| entry.name)).unwrap_or_default())
+    /// [`NameError`] with the most similar name if no pipeline has the name.
+    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, NameError> {
+        find_named("pipeline", name, self.pipelines.iter().map(|entry| (entry.name, entry)))
     }
 
     /// Returns the display with the given name.
     ///
     /// # Errors
     ///
-    /// Returns the most similar valid name if no display has the name.
-    pub fn display(&self, name: &str) -> Result<&DisplayEntry, &'static str> {
-        let found = self.displays.iter().find(|entry| entry.name == name);
-        found.ok_or_else(|| nearest(name, self.displays.iter().map(|entry| entry.name)).unwrap_or_default())
+    /// [`NameError`] with the valid names if no display has the name.
+    pub fn display(&self, name: &str) -> Result<&DisplayEntry, NameError> {
+        find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }
 
     /// Returns the settings (keys) of all pipelines, each once, with the families that have the setting.

@@ -1,8 +1,10 @@
 //! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
+use pxpl5_sim::parameters::TextError;
 use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::str::FromStr;
 
 /// The method by which a device moves a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -85,10 +87,30 @@ impl Reprojection {
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 
+pxpl5_sim::parameters::named!(Warp, "method of reprojection", Warp::ALL);
+pxpl5_sim::parameters::named!(Every, "part of a scan", Every::ALL);
+
 impl fmt::Display for Reprojection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let by = Warp::ALL.iter().find(|(_, by)| *by == self.by).map_or("", |(name, _)| name);
-        let every = Every::ALL.iter().find(|(_, every)| *every == self.every).map_or("", |(name, _)| name);
-        write!(f, "{by} every {every}, {} us", self.latency_us)
+        write!(f, "{} every {}, {} us", self.by, self.every, self.latency_us)
+    }
+}
+
+/// The forms in which a correction of the raster can be written as text.
+pub(crate) const RASTER_FORMS: &str = "plain, vdrt or a device such as `rotation every line, 100 us`";
+
+impl FromStr for Reprojection {
+    type Err = TextError;
+
+    /// Parses a text such as `rotation every line, 100 us`, the form in which a device is written.
+    fn from_str(text: &str) -> Result<Self, TextError> {
+        let parse = || {
+            let (way, latency) = text.split_once(", ")?;
+            let (by, every) = way.split_once(" every ")?;
+            let latency_us = latency.strip_suffix(" us")?.parse().ok()?;
+            let is_valid = (Self::LATENCY_US.0..=Self::LATENCY_US.1).contains(&latency_us);
+            is_valid.then_some(Self { by: by.parse().ok()?, every: every.parse().ok()?, latency_us })
+        };
+        parse().ok_or_else(|| TextError::whole(RASTER_FORMS, text))
     }
 }

@@ -78,15 +78,6 @@ impl<E, O> Context<E, O> {
     }
 }
 
-/// A board that cannot continue, as a line of a deadlock report.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Blocked {
-    /// Name of the board in reports, such as "GP 3".
-    pub board: String,
-    /// Description of the condition that the board waits for, and of the board that must cause it.
-    pub waits_for: String,
-}
-
 /// A test bench for one device. The test schedules events for the device and reads its outputs with their times.
 #[derive(Debug)]
 pub struct TestBench<E, O> {

@@ -40,7 +40,7 @@ mod time;
 mod trace;
 
 pub use clock::{Clock, Cycles};
-pub use context::{Blocked, Context, TestBench};
+pub use context::{Context, TestBench};
 pub use queue::{EventQueue, Phase};
 pub use random::SplitMix64;
 pub use time::{Span, Time};

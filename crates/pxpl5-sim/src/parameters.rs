@@ -37,17 +37,19 @@
 mod error;
 mod info;
 mod macros;
+mod name;
 mod nearest;
 mod number;
 mod table;
 mod text;
 mod value;
 
-pub use crate::parameter_table;
+pub use crate::{named, parameter_table};
 pub use error::ParameterError;
 pub use info::{ParameterInfo, Standing};
+pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
-pub use text::text_of;
+pub use text::{TextError, text_of};
 pub use value::{MAX, Value};

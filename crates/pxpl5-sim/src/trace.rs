@@ -3,6 +3,8 @@
 use crate::Time;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::num::ParseIntError;
+use std::str::FromStr;
 
 /// The increment of SplitMix64: 2^64 / golden ratio, made odd.
 pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -29,6 +31,15 @@ impl TraceHash {
     pub fn record(&mut self, time: Time, facts: &[u64]) {
         let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);
+    }
+}
+
+impl FromStr for TraceHash {
+    type Err = ParseIntError;
+
+    /// Parses the 16 hexadecimal digits that `Display` writes.
+    fn from_str(text: &str) -> Result<Self, ParseIntError> {
+        u64::from_str_radix(text, 16).map(Self)
     }
 }
 

@@ -68,6 +68,8 @@ pub(crate) trait Named: Copy + PartialEq + 'static {
     }
 }
 
+pxpl5_sim::parameters::named!(ClipKind, "clip", ClipKind::NAMES.iter().copied());
+
 impl Named for ClipKind {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("prism", Self::Prism),
@@ -79,47 +81,45 @@ impl Named for ClipKind {
     ];
 }
 
+pxpl5_sim::parameters::named!(ProjectionKind, "projection", ProjectionKind::NAMES.iter().copied());
+
 impl Named for ProjectionKind {
     const NAMES: &'static [(&'static str, Self)] =
         &[("orthographic", Self::Orthographic), ("perspective", Self::Perspective), ("jittered", Self::Jittered)];
 }
+
+pxpl5_sim::parameters::named!(RendererKind, "renderer", RendererKind::NAMES.iter().copied());
 
 impl Named for RendererKind {
     const NAMES: &'static [(&'static str, Self)] = &[("host", Self::Host), ("pixel-planes", Self::PixelPlanes)];
 }
 
 impl Named for TieRule {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("half-open", Self::HalfOpen),
-        ("product-positive", Self::ProductPositive),
-        ("same-sign", Self::SameSign),
-        ("closed", Self::Closed),
-    ];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for Binning {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for BinTolerance {
-    const NAMES: &'static [(&'static str, Self)] = &[("clip", Self::OfTheClip), ("codes", Self::Codes)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for Coverage {
-    const NAMES: &'static [(&'static str, Self)] = &[("sampled", Self::Sampled), ("connected", Self::Connected)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for Strobes {
-    const NAMES: &'static [(&'static str, Self)] = &[("each", Self::Each), ("mirror", Self::Mirror)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for Combine {
-    const NAMES: &'static [(&'static str, Self)] = &[("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for Rotation {
-    const NAMES: &'static [(&'static str, Self)] = &[("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
+    const NAMES: &'static [(&'static str, Self)] = &Self::ALL;
 }
 
 impl Named for bool {

@@ -92,7 +92,7 @@ impl Session {
     }
 
     pub(crate) fn board(&self, name: &str) -> Result<Vec<String>, String> {
-        let board: Board = name.parse()?;
+        let board = name.parse::<Board>().map_err(|error| error.to_string())?;
         look::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
     }
 

@@ -33,6 +33,8 @@ impl Eye {
     }
 }
 
+pxpl5_sim::parameters::named!(Eye, "eye", Eye::BOTH.map(|eye| (eye.name(), eye)));
+
 /// The number of a visible surface, counted over all displays of a machine in order. With a single NTSC display, the
 /// number equals the index of the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -19,7 +19,12 @@ pub enum CopySchedule {
     Backup,
 }
 
+pxpl5_sim::parameters::named!(CopySchedule, "copy schedule", CopySchedule::ALL);
+
 impl CopySchedule {
+    /// All schedules with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] = [("whole", Self::Whole), ("split", Self::Split), ("backup", Self::Backup)];
+
     /// Returns true if the bottom regions are copied later than all top regions.
     #[must_use]
     pub const fn is_split(self) -> bool {

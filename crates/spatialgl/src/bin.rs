@@ -44,6 +44,14 @@ pub enum Binning {
     AllPlanes,
 }
 
+impl Binning {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
+}
+
+pxpl5_sim::parameters::named!(Binning, "method of binning", Binning::ALL);
+
 /// The distance from a plane within which a vertex counts as lying on both sides of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -57,6 +65,13 @@ pub enum BinTolerance {
     /// A fixed distance in pixels, which does not depend on the clip.
     Pixels(f64),
 }
+
+impl BinTolerance {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 2] = [("clip", Self::OfTheClip), ("codes", Self::Codes)];
+}
+
+pxpl5_sim::parameters::named!(BinTolerance, "tolerance of bins", BinTolerance::ALL);
 
 impl BinLayout {
     /// Returns a layout with a single bin, which contains all primitives.

@@ -16,6 +16,13 @@ pub enum Combine {
     Add,
 }
 
+impl Combine {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
+}
+
+pxpl5_sim::parameters::named!(Combine, "way to combine slices", Combine::ALL);
+
 /// The kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {

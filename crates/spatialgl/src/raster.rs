@@ -32,6 +32,13 @@ pub enum Coverage {
     Connected,
 }
 
+impl Coverage {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 2] = [("sampled", Self::Sampled), ("connected", Self::Connected)];
+}
+
+pxpl5_sim::parameters::named!(Coverage, "coverage rule", Coverage::ALL);
+
 /// Counts of the work for one slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SliceStats {

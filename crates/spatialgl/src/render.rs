@@ -31,6 +31,13 @@ pub enum Strobes {
     Mirror,
 }
 
+impl Strobes {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
+}
+
+pxpl5_sim::parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
+
 /// The settings for rendering a volume from recorded graphics commands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {

@@ -24,6 +24,18 @@ pub enum TieRule {
 }
 
 impl TieRule {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("half-open", Self::HalfOpen),
+        ("product-positive", Self::ProductPositive),
+        ("same-sign", Self::SameSign),
+        ("closed", Self::Closed),
+    ];
+}
+
+pxpl5_sim::parameters::named!(TieRule, "tie rule", TieRule::ALL);
+
+impl TieRule {
     #[inline(always)]
     pub(crate) fn plus(self, a: f64, b: f64) -> bool {
         match self {

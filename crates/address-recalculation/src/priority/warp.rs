@@ -20,6 +20,8 @@ pub enum Falloff {
     Step,
 }
 
+pxpl5_sim::parameters::named!(Falloff, "falloff", Falloff::ALL);
+
 impl Falloff {
     /// All variants with their command-line names.
     pub const ALL: [(&str, Self); 4] =

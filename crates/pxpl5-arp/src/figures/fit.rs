@@ -1,7 +1,7 @@
 //! The side of a cell, fitted to one update rate of table 1. The other rates serve as checks.
 
 use super::rules::Rules;
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::walk::at_frames;
 use crate::world::World;
 use address_recalculation::priority::{Cell, Cells, PriorityTiming};
@@ -30,7 +30,7 @@ pub fn policy_rates_hz(
     numbers: &PriorityTiming,
     has_cascade: bool,
     frames: u64,
-) -> Result<Vec<f64>, ExperimentError> {
+) -> Result<Vec<f64>, WalkError> {
     let world = World::new(scene, numbers.cell_m)?;
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
@@ -62,12 +62,7 @@ pub(super) fn rates_hz(
 /// # Errors
 ///
 /// Fails in the same cases as [`policy_rates_hz`].
-pub fn fitted_cell_m(
-    scene: &Scene,
-    path: &Walk,
-    rules: &Rules,
-    frames: u64,
-) -> Result<(f64, Vec<f64>), ExperimentError> {
+pub fn fitted_cell_m(scene: &Scene, path: &Walk, rules: &Rules, frames: u64) -> Result<(f64, Vec<f64>), WalkError> {
     // Keep the side, its rates and its error.
     let mut best = (f64::NAN, Vec::new(), f64::INFINITY);
     for tenths in TENTHS {

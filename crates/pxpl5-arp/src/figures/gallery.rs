@@ -1,6 +1,6 @@
 //! The gallery, the scene of all experiments.
 
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::hall::{Route, path_of, scaled};
 use pxpl5_scene::{Scene, builtin};
 use tracking::motion::Walk;
@@ -10,8 +10,8 @@ use tracking::motion::Walk;
 const HALL_SCALE: f64 = 0.5;
 
 /// Returns the scaled gallery and its path.
-pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
-    let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
+pub(crate) fn gallery() -> Result<(Scene, Walk), WalkError> {
+    let scene = builtin("gallery").map_err(|error| WalkError::Scene {
         scene: "gallery".to_owned(),
         expected: "a built-in scene",
         found: error.to_string(),

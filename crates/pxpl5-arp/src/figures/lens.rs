@@ -1,7 +1,7 @@
 //! A straight edge seen through a lens, to test the lens correction.
 
 use crate::cube_faces::{Corner, CubeView, DepthRange};
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
 use glam::DVec3;
 
@@ -12,8 +12,8 @@ use glam::DVec3;
 ///
 /// # Errors
 ///
-/// Returns [`ExperimentError`] if the lens is invalid.
-pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
+/// Returns [`WalkError`] if the lens is invalid.
+pub fn straight_edge(lens: Lens) -> Result<[f64; 2], WalkError> {
     let config = ArpConfig { lens, ..ArpConfig::IDEAL };
     let config =
         ArpConfig { timing: address_recalculation::ArpTiming { display_memories: 1, ..config.timing }, ..config };

@@ -3,7 +3,7 @@
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
-use crate::error::ExperimentError;
+use crate::error::WalkError;
 use crate::look::{Faces, picture, rgb};
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, Lens, Picture};
@@ -32,8 +32,8 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError::Display`] if the lens is invalid.
-    pub fn seen(&self) -> Result<RgbImage, ExperimentError> {
+    /// Returns [`WalkError::Display`] if the lens is invalid.
+    pub fn seen(&self) -> Result<RgbImage, WalkError> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
@@ -42,7 +42,7 @@ impl Views<'_> {
     /// # Errors
     ///
     /// Fails in the same cases as [`Views::seen`].
-    pub fn memories(&self) -> Result<RgbImage, ExperimentError> {
+    pub fn memories(&self) -> Result<RgbImage, WalkError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
         let tints =
@@ -62,7 +62,7 @@ impl Views<'_> {
     /// # Errors
     ///
     /// Fails in the same cases as [`Views::seen`].
-    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, ExperimentError> {
+    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, WalkError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
         let bar = 24;

@@ -55,7 +55,7 @@ pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
 /// Returns one line for each blocked board, with the board or event that it waits for.
 pub(super) fn waits(stepper: &Stepper) -> String {
     let blocked = stepper.machine().blocked();
-    blocked.iter().map(|wait| format!("{:<12} waits for {}\n", wait.board, wait.waits_for)).collect()
+    blocked.iter().map(|wait| format!("{:<12} waits for {}\n", wait.board.to_string(), wait.waits_for)).collect()
 }
 
 /// Returns one line for each channel of the ring, and one line for each message that waits for a channel.
@@ -79,8 +79,8 @@ pub(super) fn ring(stepper: &Stepper) -> String {
     }
     // Messages that have no channel yet, with the reason.
     for message in stepper.record().ring().waiting() {
-        let waits = message.blocked(|node| ports.board(node).to_string());
-        let _ = writeln!(text, "   {} waits for {}", ports.board(message.source), waits.waits_for);
+        let waits_for = message.waits_for(|node| ports.board(node));
+        let _ = writeln!(text, "   {} waits for {waits_for}", ports.board(message.source));
     }
     text
 }

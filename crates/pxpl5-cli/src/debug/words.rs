@@ -62,7 +62,7 @@ pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), 
     let [first, rest @ ..] = words else {
         return Err("expected a board: host, ring, gp N, renderer N or display N, found nothing".to_owned());
     };
-    Ok((first.parse()?, rest))
+    Ok((first.parse::<Board>().map_err(|error| error.to_string())?, rest))
 }
 
 /// Parses an address written as `0x` and hexadecimal digits.

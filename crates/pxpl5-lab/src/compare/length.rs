@@ -1,7 +1,7 @@
 //! The length of a comparison along a recording.
 
-use super::error::CompareError;
 use super::query::CompareQuery;
+use crate::error::StudyError;
 use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
 use pxpl5_wire::NodeId;
@@ -28,7 +28,7 @@ impl CompareQuery {
     /// # Errors
     ///
     /// Fails if a setting is invalid, or if the registry has no compared pipeline.
-    pub fn set_length(&mut self) -> Result<Option<RecordedLength>, CompareError> {
+    pub fn set_length(&mut self) -> Result<Option<RecordedLength>, StudyError> {
         let plan = self.first_plan()?;
         let asked = self.shared.place_of("fields").map(|_| plan.fields);
         let may_pass_the_end = plan.head.as_ref().is_some_and(|head| head.head().motion().ends_ps().is_none());

@@ -1,12 +1,12 @@
 //! Definition and execution of a comparison of pipelines.
 
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
-use super::error::CompareError;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
 use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
+use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, HeadChoice, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
@@ -115,8 +115,8 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`CompareError`] when a setting is invalid, or when the run is too short to evaluate.
-    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
+    /// Returns [`StudyError`] when a setting is invalid, or when the run is too short to evaluate.
+    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, StudyError> {
         self.run_with(finished, |_| {})
     }
 
@@ -130,7 +130,7 @@ impl CompareQuery {
         &self,
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, CompareError> {
+    ) -> Result<Comparison, StudyError> {
         self.run_into(None, finished, ended)
     }
 
@@ -145,7 +145,7 @@ impl CompareQuery {
         store: Option<&CompareStore>,
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
-    ) -> Result<Comparison, CompareError> {
+    ) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
@@ -168,7 +168,7 @@ impl CompareQuery {
                 None => row,
             };
             ended(&row);
-            Ok::<_, CompareError>(row)
+            Ok::<_, StudyError>(row)
         });
         Ok(Comparison {
             schema: "pxpl5-comparison/3",
@@ -193,12 +193,12 @@ impl CompareQuery {
     /// # Errors
     ///
     /// Fails in the same cases as [`CompareQuery::run`].
-    pub fn rows(&self) -> Result<Vec<String>, CompareError> {
+    pub fn rows(&self) -> Result<Vec<String>, StudyError> {
         Ok(self.identity()?.1)
     }
 
     /// Returns the plan of the first row with the first seed, and the names of all rows.
-    pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), CompareError> {
+    pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
         Ok((plan, rows.into_iter().map(|row| row.name).collect()))
@@ -210,20 +210,20 @@ impl CompareQuery {
     /// # Errors
     ///
     /// Fails in the same cases as [`CompareQuery::run`].
-    pub fn plans(&self) -> Result<Vec<Plan>, CompareError> {
+    pub fn plans(&self) -> Result<Vec<Plan>, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         let seed = self.any_plan(&compared_pipelines)?.seed;
         Ok(compared_pipelines.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
     }
 
     /// Returns the pipelines to compare, in the order of the registry.
-    fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, CompareError> {
+    fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
         let mut chosen = compared_pipelines(self.shared.registry());
         let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
         for found in &self.only {
             if !names.contains(found) {
                 let nearest = nearest(found, names.iter().map(String::as_str)).unwrap_or_default().to_owned();
-                return Err(CompareError::Row { expected: names.join(", "), found: found.clone(), nearest });
+                return Err(StudyError::Row { expected: names.join(", "), found: found.clone(), nearest });
             }
         }
         chosen.retain(|contender| self.only.is_empty() || self.only.contains(&contender.name));
@@ -231,29 +231,29 @@ impl CompareQuery {
     }
 
     /// Returns the plan of the first row with the first seed, without a check of its length.
-    pub(super) fn first_plan(&self) -> Result<Plan, CompareError> {
+    pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
 
-    fn plan_of_first(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
-        let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
-        let first = compared_pipelines.first().ok_or(CompareError::NoPipeline)?;
+    fn plan_of_first(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
+        let seed = *self.seeds.first().ok_or(StudyError::NoSeed)?;
+        let first = compared_pipelines.first().ok_or(StudyError::NoPipeline)?;
         Ok(first.plan(&self.shared, seed)?)
     }
 
     /// Returns the plan of the first row with the first seed, to check the shared settings.
-    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, CompareError> {
+    fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
-            return Err(CompareError::NoHead);
+            return Err(StudyError::NoHead);
         }
         if self.until.is_some() && plan.head.as_ref().is_some_and(HeadChoice::is_recording) {
-            return Err(CompareError::OneMotion);
+            return Err(StudyError::OneMotion);
         }
         // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
-            return Err(CompareError::Fields { expected, found: plan.fields });
+            return Err(StudyError::Fields { expected, found: plan.fields });
         }
         Ok(plan)
     }
@@ -294,7 +294,7 @@ impl CompareQuery {
         contender: &ComparedPipeline,
         scene: &Arc<Scene>,
         progress: &Progress<'_>,
-    ) -> Result<ComparisonRow, CompareError> {
+    ) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let is_one_motion = plan.head.as_ref().is_some_and(HeadChoice::is_recording);
         let mut trials = self.trials(contender, &self.seeds, scene, progress);

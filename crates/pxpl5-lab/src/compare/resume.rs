@@ -1,8 +1,8 @@
 //! Opening of the finished rows of a comparison, with the settings that identify them.
 
-use super::error::CompareError;
 use super::query::CompareQuery;
 use super::store::{CompareStore, Header, ROWS_SCHEMA};
+use crate::error::StudyError;
 use crate::experiment_file::plain;
 use crate::sweep::inputs_of;
 use std::collections::BTreeMap;
@@ -14,18 +14,18 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`CompareError`] in these cases:
+    /// Returns [`StudyError`] in these cases:
     ///
     /// - The folder cannot be read or written, or is in use.
     /// - A line before the last is damaged.
     /// - `resume` is true, and the folder holds rows with other settings. The error names the first key that differs.
     /// - `resume` is false, and the folder holds rows of an interrupted comparison.
     /// - A setting of the query is invalid.
-    pub fn open_store(&self, folder: &Path, resume: bool) -> Result<CompareStore, CompareError> {
+    pub fn open_store(&self, folder: &Path, resume: bool) -> Result<CompareStore, StudyError> {
         CompareStore::open(folder, &self.header()?, resume)
     }
 
-    fn header(&self) -> Result<Header, CompareError> {
+    fn header(&self) -> Result<Header, StudyError> {
         let (plan, rows) = self.identity()?;
         let mut settings: BTreeMap<String, String> =
             self.shared.settings.iter().map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();

@@ -8,9 +8,9 @@
 //! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
 //! removed, and only its row is computed again.
 
-use super::error::CompareError;
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
+use crate::error::StudyError;
 use crate::sweep::{ROWS_FILE, SweepError, line_of, lock, opened};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
@@ -72,7 +72,7 @@ pub struct CompareStore {
 impl CompareStore {
     /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
     /// describes.
-    pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, CompareError> {
+    pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, StudyError> {
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
@@ -83,7 +83,7 @@ impl CompareStore {
         } else {
             let of = before.map_or(0, |before| before.rows.len());
             if !lines.is_empty() && lines.len() < of {
-                return Err(CompareError::Unfinished { path: path.display().to_string(), rows: lines.len(), of });
+                return Err(StudyError::Unfinished { path: path.display().to_string(), rows: lines.len(), of });
             }
             (lines, end) = (Vec::new(), 0);
         }
@@ -110,7 +110,7 @@ impl CompareStore {
 
     /// Appends a finished row. Returns the row with the numbers that a later process reads, so that an interruption
     /// changes no result.
-    pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, CompareError> {
+    pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         let number = rows.1 + 1;
         // The pictures come first, because the line names them.
@@ -122,13 +122,13 @@ impl CompareStore {
         parsed::<Line>(&path, number + 1, text.as_bytes())?.row_in(&self.folder)
     }
 
-    fn put_picture(&self, number: usize, picture: &LastPicture) -> Result<PictureFiles, CompareError> {
+    fn put_picture(&self, number: usize, picture: &LastPicture) -> Result<PictureFiles, StudyError> {
         let put = |what: &str, picture: &RgbImage| {
             let name = format!("{number}-{what}.png");
             let path = self.folder.join(&name);
             let written = picture.save_with_format(&path, image::ImageFormat::Png).map_err(std::io::Error::other);
             written.map_err(SweepError::io(&path, "cannot be written"))?;
-            Ok::<_, CompareError>(name)
+            Ok::<_, StudyError>(name)
         };
         let should_be = picture.should_be.as_ref().map(|ideal| put("should-be", ideal)).transpose()?;
         Ok(PictureFiles { seen: put("seen", &picture.seen)?, should_be, is_complete: picture.is_complete })
@@ -137,7 +137,7 @@ impl CompareStore {
 
 impl Header {
     /// Returns an error that names the first difference to the header of a file.
-    fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), CompareError> {
+    fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), StudyError> {
         let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
@@ -154,7 +154,7 @@ impl Header {
         match pairs.into_iter().chain(settings).chain(last).find(|(_, expected, found)| expected != found) {
             Some((key, expected, found)) => {
                 let path = path.display().to_string();
-                Err(CompareError::OtherSettings { path, key: key.to_owned(), expected, found })
+                Err(StudyError::OtherSettings { path, key: key.to_owned(), expected, found })
             }
             None => Ok(()),
         }
@@ -163,15 +163,15 @@ impl Header {
 
 impl Line {
     /// Returns the row with its pictures, which are read from the folder.
-    fn row_in(self, folder: &Path) -> Result<ComparisonRow, CompareError> {
+    fn row_in(self, folder: &Path) -> Result<ComparisonRow, StudyError> {
         let read = |name: &String| {
             let path = folder.join(name);
             let picture = image::open(&path).map_err(std::io::Error::other);
-            Ok::<_, CompareError>(picture.map_err(SweepError::io(&path, "cannot be read"))?.into_rgb8())
+            Ok::<_, StudyError>(picture.map_err(SweepError::io(&path, "cannot be read"))?.into_rgb8())
         };
         let picture = self.picture.map(|files| {
             let should_be = files.should_be.as_ref().map(read).transpose()?;
-            Ok::<_, CompareError>(LastPicture { seen: read(&files.seen)?, should_be, is_complete: files.is_complete })
+            Ok::<_, StudyError>(LastPicture { seen: read(&files.seen)?, should_be, is_complete: files.is_complete })
         });
         Ok(ComparisonRow { by_field: self.by_field, picture: picture.transpose()?, ..self.row })
     }
@@ -179,7 +179,7 @@ impl Line {
 
 /// Reads the header, the rows, and the length in bytes up to the end of the last complete line. All are empty if the
 /// file does not exist.
-fn read(path: &Path) -> Result<(Option<Header>, Vec<Line>, u64), CompareError> {
+fn read(path: &Path) -> Result<(Option<Header>, Vec<Line>, u64), StudyError> {
     let bytes = match fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         bytes => bytes.map_err(SweepError::io(path, "cannot be read"))?,
@@ -191,13 +191,13 @@ fn read(path: &Path) -> Result<(Option<Header>, Vec<Line>, u64), CompareError> {
     Ok((header, rows, whole as u64))
 }
 
-fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, CompareError> {
+fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, StudyError> {
     serde_json::from_slice(text).map_err(|error| {
         let path = path.display().to_string();
-        CompareError::Damaged { path, line, found: error.to_string() }
+        StudyError::Damaged { path, line, found: error.to_string() }
     })
 }
 
-fn put(file: &mut File, path: &Path, line: &str) -> Result<(), CompareError> {
+fn put(file: &mut File, path: &Path, line: &str) -> Result<(), StudyError> {
     Ok(file.write_all(line.as_bytes()).map_err(SweepError::io(path, "cannot be written"))?)
 }

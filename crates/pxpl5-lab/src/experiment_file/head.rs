@@ -42,7 +42,7 @@ impl HeadChoice {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = reprojection::read(file, pipeline)?;
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
-        let place = file.choice("head.place", &HeadPlace::NAMES)?.unwrap_or_default();
+        let place = file.choice("head.place", &HeadPlace::ALL)?.unwrap_or_default();
         // A recording is found relative to the experiment file that names the recording.
         let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
@@ -112,7 +112,7 @@ impl HeadChoice {
         .map(|(key, value)| (key.to_owned(), Value::from(value)))
         .into();
         if self.head.place() != HeadPlace::default() {
-            all.push(("head.place".to_owned(), Value::from(self.head.place().name())));
+            all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
         all.extend(reprojection::settings(self.head.raster()));
         all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));

@@ -56,8 +56,10 @@ impl Published {
 }
 
 fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, FileError> {
-    Measure::named(name).map_err(|nearest| match file.get(key) {
-        Some(setting) => wrong(key, setting, &format!("a quantity that is measured (the nearest is {nearest})")),
+    Measure::named(name).map_err(|error| match file.get(key) {
+        Some(setting) => {
+            wrong(key, setting, &format!("a quantity that is measured (the nearest is {})", error.nearest()))
+        }
         None => FileError::Missing { key: "measure", how: "quantities that are measured" },
     })
 }

@@ -368,7 +368,7 @@ fn regions_touched() -> Result<FigureValue> {
 
 /// Returns the number of bin entries per visible triangle, over both eyes and a number of head poses.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
-    let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
+    let list = Arc::new(display_list(scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
     let (views, _) = views(scene, 1, hmd, 2);
     let share = Share::new(list, 0, 1);

@@ -1,6 +1,7 @@
 //! A measurement of all levels of modelling (speed and error), stored in a file.
 
 use pxpl5_run::{Level, Pixels};
+use pxpl5_sim::parameters::TextError;
 use serde::{Deserialize, Serialize};
 
 /// Name and version of the record's JSON layout.
@@ -81,13 +82,15 @@ impl LevelRecord {
     ///
     /// # Errors
     ///
-    /// Returns a description of the error in the text.
-    pub fn read(text: &str) -> Result<Self, String> {
-        let record: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    /// Returns a [`TextError`] with the expected and the found content.
+    pub fn read(text: &str) -> Result<Self, TextError> {
+        let wrong = |place: &str, expected, found| TextError { place: place.to_owned(), expected, found };
+        let record: Self =
+            serde_json::from_str(text).map_err(|error| wrong("", "a record of levels as JSON", error.to_string()))?;
         if record.schema == SCHEMA {
             return Ok(record);
         }
-        Err(format!("schema: expected {SCHEMA}, found {}", record.schema))
+        Err(wrong("schema", SCHEMA, record.schema))
     }
 }
 
@@ -155,6 +158,7 @@ mod tests {
         assert!(text.contains("\"simulated_seconds_per_second\":null"));
         assert_eq!(LevelRecord::read(&text), Ok(record));
         let other = text.replace(SCHEMA, "pxpl5-levels/1");
-        assert_eq!(LevelRecord::read(&other), Err(format!("schema: expected {SCHEMA}, found pxpl5-levels/1")));
+        let error = LevelRecord::read(&other).expect_err("another schema").to_string();
+        assert_eq!(error, format!("schema: expected {SCHEMA}, found pxpl5-levels/1"));
     }
 }

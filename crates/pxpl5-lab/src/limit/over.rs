@@ -1,6 +1,7 @@
 //! Limits of any numeric setting: the smallest or greatest value with which an experiment reaches a goal.
 
 use super::is_reached;
+use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Utilisation, summary};
@@ -139,7 +140,7 @@ impl OverQuery {
     /// # Errors
     ///
     /// Returns [`FileError`] or [`ExperimentError`] if no value at all can be run.
-    pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, OverError> {
+    pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, StudyError> {
         let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
         let last = self.values.count - 1;
         for number in [0, last, last / 2, last / 4, last - last / 4] {
@@ -187,23 +188,12 @@ impl OverQuery {
     }
 }
 
-/// Error of a search in which no value of the setting could be run.
-#[derive(Debug, thiserror::Error)]
-pub enum OverError {
-    /// The settings of the experiment are invalid.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The machine of the experiment cannot be built or run.
-    #[error(transparent)]
-    Experiment(#[from] ExperimentError),
-}
-
 /// A search in progress, with the results of the tried values.
 struct Search<'a> {
     query: &'a OverQuery,
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value that could not be run.
-    refused: Option<OverError>,
+    refused: Option<StudyError>,
     /// The scene that was loaded last, with the settings that chose it.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
@@ -224,7 +214,7 @@ impl Search<'_> {
         reached
     }
 
-    fn run(&mut self, value: f64) -> Result<Trial, OverError> {
+    fn run(&mut self, value: f64) -> Result<Trial, StudyError> {
         let plan = self.query.plan(value)?;
         let scene = self.load(&plan)?;
         let goal = self.query.goal;
@@ -260,7 +250,7 @@ impl Search<'_> {
     }
 
     /// Returns the result if all values miss the goal. The best value then states the limiting resource.
-    fn none(mut self) -> Result<OverLimit, OverError> {
+    fn none(mut self) -> Result<OverLimit, StudyError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {
             return Err(error);

@@ -5,8 +5,8 @@ use crate::rig::{
     machine, say, target, us, words,
 };
 use pxpl5_gp::Fault;
-use pxpl5_machine::{DEADLOCK_TICKS, Machine, RunError};
-use pxpl5_sim::{Blocked, Span, Time};
+use pxpl5_machine::{Blocked, Board, DEADLOCK_TICKS, Machine, RunError};
+use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyPath, NodeId};
 
 const LONG: Time = Time(100_000 * 1_000_000);
@@ -26,7 +26,7 @@ fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
     assert_eq!(machine.idle_ticks(), 99);
     let error = machine.run_until(LONG).expect_err("nothing can happen");
     let time = us(100 * (1 + DEADLOCK_TICKS));
-    let blocked = vec![Blocked { board: "GP 0".to_owned(), waits_for: "Godot".to_owned() }];
+    let blocked = vec![Blocked { board: Board::Gp(0), waits_on: None, waits_for: "Godot".to_owned() }];
     assert_eq!(error, RunError::Deadlock { time, blocked });
     let told = format!("nothing can happen any more at {time}: GP 0 waits for Godot;");
     assert_eq!(error.to_string(), told);
@@ -111,12 +111,18 @@ fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
     // A region takes 16 messages of (1,024 + 16) words of 50 ns: 832 us.
     machine.run_until(us(500)).expect("it goes on");
     let blocked = machine.blocked();
-    let found: Vec<(&str, &str)> = blocked.iter().map(|b| (&b.board[..], &b.waits_for[..])).collect();
-    let boards: Vec<&str> = found.iter().map(|(board, _)| *board).collect();
-    assert_eq!(boards[..4], ["host", "GP 1", "renderer 0", "renderer 1"], "{found:?}");
-    assert_eq!(found[..2], [("host", "Godot"), ("GP 1", "nothing")]);
-    assert_eq!(found[2].1, "frame buffer at node 5 to take region 0");
-    assert_eq!(machine.record().ring().blocked().len(), found.len() - 4, "and the ring's messages");
+    let boards: Vec<Board> = blocked.iter().map(|wait| wait.board).collect();
+    assert_eq!(boards[..4], [Board::Host, Board::Gp(1), Board::Renderer(0), Board::Renderer(1)], "{blocked:?}");
+    let programs = [&blocked[0], &blocked[1]].map(ToString::to_string);
+    assert_eq!(programs, ["host waits for Godot", "GP 1 waits for nothing"]);
+    assert_eq!(blocked[2].waits_for, "frame buffer at node 5 to take region 0");
+    assert_eq!(blocked[2].waits_on, Some(Board::Display(0)));
+    // Of the two messages with pixels, the one without the port waits for the other renderer.
+    let messages = &blocked[4..];
+    assert_eq!(messages.len(), machine.record().ring().waiting().len(), "and the ring's messages");
+    let pairs: Vec<_> = messages.iter().map(|wait| (wait.board, wait.waits_on)).collect();
+    let [one, other] = [Board::Renderer(0), Board::Renderer(1)];
+    assert!(pairs.contains(&(one, Some(other))) || pairs.contains(&(other, Some(one))), "{pairs:?}");
     machine.run_until(us(3_000)).expect("it goes on");
     assert_eq!(machine.blocked().len(), 2, "programs alone");
 }
@@ -132,7 +138,7 @@ fn a_fault_of_a_program_stops_the_machine_with_its_board_and_time() {
     });
     machine.switch_on();
     let error = machine.run_until(LONG).expect_err("a fault");
-    assert_eq!(error, RunError::Fault { board: "GP 1".to_owned(), time: us(7), fault: fault.clone() });
+    assert_eq!(error, RunError::Fault { board: Board::Gp(1), time: us(7), fault: fault.clone() });
     assert_eq!(error.to_string(), format!("GP 1 stopped at {}: {fault}", us(7)));
     assert_eq!((error.time(), machine.step_before(LONG)), (us(7), Err(error.clone())));
 }
@@ -149,8 +155,8 @@ fn a_message_that_no_ring_carries_stops_the_machine() {
         let error = machine.run_until(LONG).expect_err("refused");
         // The board sends its request one cycle after the software cost. The ring refuses it one word later.
         assert_eq!(error.time(), Time::ZERO + MESSAGE + Span::from_ns(25 + 50));
-        let RunError::Ring { reason: found, .. } = &error else { panic!("{error}") };
-        assert!(found.contains(reason), "{found}");
+        let RunError::Ring { error: found, .. } = &error else { panic!("{error}") };
+        assert!(found.to_string().contains(reason), "{found}");
         assert_eq!(error.to_string(), format!("ring, at {}: {found}", error.time()));
     }
 }

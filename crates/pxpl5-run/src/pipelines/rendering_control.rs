@@ -65,6 +65,8 @@ impl FinishedRegions {
     }
 }
 
+pxpl5_sim::parameters::named!(FinishedRegions, "action", FinishedRegions::ALL.map(|action| (action.name(), action)));
+
 impl RenderingControl {
     /// Creates a stereo pipeline with Phong shading, as measured in TR94.
     #[must_use]

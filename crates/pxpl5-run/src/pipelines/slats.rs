@@ -28,7 +28,12 @@ pub enum Code {
     Optimised,
 }
 
+pxpl5_sim::parameters::named!(Code, "version of the code", Code::ALL);
+
 impl Code {
+    /// All versions with their names in experiment files.
+    pub const ALL: [(&str, Self); 3] = [("1994", Self::Of1994), ("1995", Self::Of1995), ("optimised", Self::Optimised)];
+
     const fn timing(self) -> GpTiming {
         match self {
             Self::Of1994 => GpTiming::SLATS_1994,
@@ -55,7 +60,12 @@ pub enum SlatsLighting {
     OnGp,
 }
 
+pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
+
 impl SlatsLighting {
+    /// Both choices with their names in experiment files.
+    pub const ALL: [(&str, Self); 2] = [("precomputed", Self::Precomputed), ("gp", Self::OnGp)];
+
     const fn shading(self) -> Shading {
         match self {
             Self::Precomputed => Shading::Precomputed,
@@ -335,12 +345,10 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     if before_retrace { retrace } else { video.reaches(target, field).unwrap_or(retrace) }
 }
 
-const COPIES: [(&str, CopySchedule); 3] =
-    [("whole", CopySchedule::Whole), ("split", CopySchedule::Split), ("backup", CopySchedule::Backup)];
-const BINNINGS: [(&str, RegionBinning); 2] = [("all", RegionBinning::All), ("touched", RegionBinning::Touched)];
-const LIGHTINGS: [(&str, SlatsLighting); 2] =
-    [("precomputed", SlatsLighting::Precomputed), ("gp", SlatsLighting::OnGp)];
-const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
+const COPIES: [(&str, CopySchedule); 3] = CopySchedule::ALL;
+const BINNINGS: [(&str, RegionBinning); 2] = RegionBinning::ALL;
+const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
+const CODES: [(&str, Code); 3] = Code::ALL;
 
 /// Returns the name of a value in a list of choices.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {

@@ -2,7 +2,6 @@
 
 use crate::parameters::Value;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// The provenance of a parameter's value: printed, calculated or assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -16,15 +15,13 @@ pub enum Standing {
     Assumed,
 }
 
-impl fmt::Display for Standing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Published => "published",
-            Self::Derived => "derived",
-            Self::Assumed => "assumed",
-        })
-    }
+impl Standing {
+    /// Every provenance with its name, the best first.
+    pub const ALL: [(&str, Self); 3] =
+        [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
+
+crate::parameters::named!(Standing, "provenance", Standing::ALL);
 
 /// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,7 +2,6 @@
 
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// The times at which the display shows the picture of one view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,12 +51,7 @@ impl Aim {
     }
 }
 
-impl fmt::Display for Aim {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = Self::ALL.iter().find(|(_, aim)| aim == self).map_or("", |(name, _)| name);
-        f.write_str(name)
-    }
-}
+pxpl5_sim::parameters::named!(Aim, "instant", Aim::ALL);
 
 #[cfg(test)]
 mod tests {

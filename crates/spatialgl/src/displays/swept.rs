@@ -21,6 +21,13 @@ pub enum Rotation {
     ZToX,
 }
 
+impl Rotation {
+    /// All choices with their names in options and files.
+    pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
+}
+
+pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
+
 /// The settings of a swept display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

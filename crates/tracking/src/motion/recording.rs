@@ -64,6 +64,8 @@ impl End {
     }
 }
 
+pxpl5_sim::parameters::named!(End, "end of a recording", End::NAMES);
+
 /// The format of a recorded file, as far as the contents of the file do not show it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingFormat {
@@ -120,10 +122,38 @@ impl Recording {
         }
         // UTF-16 was rejected above. Comments may have any encoding, so invalid UTF-8 is replaced.
         let text = String::from_utf8_lossy(&bytes);
-        let read::Samples { samples, repeated } = read::samples(&text, &format.columns, format.axes)?;
+        read::samples(&text, &format.columns, format.axes).map(Self::of_samples)
+    }
+
+    /// Creates a recording from samples: ascending times in seconds, each with the pose at this time.
+    ///
+    /// The axes are those of [`Axes::OpenGl`]. Times are rounded to picoseconds. The same limits apply as in files. If
+    /// several samples have the same time, only the first is kept.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use tracking::Pose;
+    /// use tracking::motion::{Motion, Recording};
+    ///
+    /// let walk = [0.0, 1.0, 2.0].map(|s| (s, Pose { position: DVec3::X * s, ..Pose::IDENTITY }));
+    /// let walk = Recording::from_samples(walk)?;
+    /// assert_eq!(walk.pose(1_500_000_000_000).position.x, 1.5);
+    /// # Ok::<(), tracking::motion::RecordingError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`RecordingError`] with the expected and the found value. The number of a line is the number of the sample,
+    /// counted from 1.
+    pub fn from_samples(samples: impl IntoIterator<Item = (f64, Pose)>) -> Result<Self, RecordingError> {
+        read::given_samples(samples).map(Self::of_samples)
+    }
+
+    fn of_samples(samples: read::Samples) -> Self {
+        let read::Samples { samples, repeated } = samples;
         let gaps = gaps(&samples);
         let warnings = repeated.into_iter().chain(gap_warning(&gaps)).collect();
-        Ok(Self { samples, end: End::default(), gaps, warnings })
+        Self { samples, end: End::default(), gaps, warnings }
     }
 
     /// Returns true if a gap follows this sample and the head stands still during the gap.

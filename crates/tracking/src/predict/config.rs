@@ -44,6 +44,8 @@ impl PredictorKind {
     }
 }
 
+pxpl5_sim::parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map(|kind| (kind.name(), kind)));
+
 /// Settings of a predictor: the method, and its assumptions about the noise of reports and the motion of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

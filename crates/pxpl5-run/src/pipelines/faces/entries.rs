@@ -1,6 +1,6 @@
 //! Registry entries of the address recalculation pipelines: names, settings and variants.
 
-use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::pipeline::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
@@ -19,9 +19,6 @@ const KEYS: [&[Key]; 4] =
 const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
-
-const ALL_POLICIES: [FacePolicy; 4] =
-    [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped];
 
 /// Returns a registry entry of the family `arp`.
 const fn named(
@@ -73,8 +70,7 @@ fn build(policy: FacePolicy, latch: Latch, settings: &PipelineSettings) -> Arc<d
 }
 
 fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
-    let named = |name: &str| POLICIES.iter().position(|policy| *policy == name);
-    let policy = settings.name(POLICY.name).and_then(named).map_or(FacePolicy::Full, |place| ALL_POLICIES[place]);
+    let policy = settings.name(POLICY.name).and_then(|name| name.parse().ok()).unwrap_or(FacePolicy::Full);
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 

@@ -1,5 +1,6 @@
 //! Names and settings of the address recalculation pipelines.
 
+use super::pipeline::FacePolicy;
 use crate::keys::{Key, KeyValues};
 use address_recalculation::priority::Falloff;
 
@@ -21,8 +22,8 @@ pub(super) const LENS: Key = Key {
     sets: &[],
 };
 
-/// Names of the policies, in the order of `FacePolicy`.
-pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"];
+/// Names of the policies.
+const POLICIES: [&str; 4] = [FacePolicy::ALL[0].0, FacePolicy::ALL[1].0, FacePolicy::ALL[2].0, FacePolicy::ALL[3].0];
 
 pub(super) const POLICY: Key = Key {
     name: "policy",

@@ -3,7 +3,7 @@
 
 use super::cells::ByCells;
 use super::ideal::{All, IdealFaces, seen_next};
-use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
 use crate::keys::KeyValue;
@@ -42,6 +42,14 @@ pub enum FacePolicy {
     /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent memories meet at their borders.
     CellsWarped,
 }
+
+impl FacePolicy {
+    /// All policies with their names in experiment files.
+    pub const ALL: [(&str, Self); 4] =
+        [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells), ("cells-warp", Self::CellsWarped)];
+}
+
+pxpl5_sim::parameters::named!(FacePolicy, "policy", FacePolicy::ALL);
 
 /// The renderer that draws the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -290,7 +298,7 @@ impl Pipeline for FacePipeline {
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let mut settings = vec![("shading", shading_value(self.shading))];
         if self.source == FaceSource::Ideal {
-            settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
+            settings.push((POLICY.name, KeyValue::Name(FacePolicy::ALL[self.policy as usize].0)));
         }
         // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
         settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));

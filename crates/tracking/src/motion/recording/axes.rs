@@ -21,6 +21,8 @@ pub enum Axes {
     Robot,
 }
 
+pxpl5_sim::parameters::named!(Axes, "convention for axes", Axes::NAMES);
+
 impl Axes {
     /// Every axis convention with its name in experiment files.
     pub const NAMES: [(&'static str, Self); 4] =

@@ -1,4 +1,5 @@
 use std::fmt;
+use std::str::FromStr;
 
 use super::RecordingError;
 
@@ -129,6 +130,15 @@ impl Columns {
 /// Parses a column number that counts from 1, and returns the index that counts from 0.
 fn number(column: &str) -> Option<usize> {
     column.parse::<usize>().ok()?.checked_sub(1)
+}
+
+impl FromStr for Columns {
+    type Err = RecordingError;
+
+    /// Parses a mapping like [`Columns::parse`].
+    fn from_str(text: &str) -> Result<Self, RecordingError> {
+        Self::parse(text)
+    }
 }
 
 impl fmt::Display for Columns {

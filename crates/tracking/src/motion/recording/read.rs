@@ -83,6 +83,26 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     collect(&lines, &layout, axes)
 }
 
+/// Checks samples that a program supplies, as if they were the lines of one of this crate's own files. Lines count from
+/// the first sample.
+pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Result<Samples, RecordingError> {
+    // The shortest decimal form of a number is read back as the same number.
+    let text = |(time_s, Pose { position: p, orientation: q }): (f64, Pose)| {
+        [time_s, p.x, p.y, p.z, q.w, q.x, q.y, q.z].map(|number| number.to_string()).join(",")
+    };
+    let texts: Vec<String> = given.into_iter().map(text).collect();
+    let lines: Vec<Line<'_>> = texts.iter().zip(1..).map(|(text, number)| Line { number, text }).collect();
+    let layout = Layout {
+        separator: Some(','),
+        columns: in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0),
+        n_fields: Some(8),
+        axes: Axes::OpenGl,
+        from_first: false,
+        begins_after: 0,
+    };
+    collect(&lines, &layout, None)
+}
+
 /// Reads the samples of a file with one JSON object per line.
 fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingError> {
     let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));

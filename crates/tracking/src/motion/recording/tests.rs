@@ -265,3 +265,23 @@ fn comments_of_recordings_may_be_in_any_encoding() {
     let recording = Recording::read(&b"# Universit\xe9\n0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"[..]).unwrap();
     assert_eq!(recording.n_samples(), 2);
 }
+
+#[test]
+fn samples_of_a_program_are_checked_like_those_of_a_file() {
+    let at = |s: f64| (s, Pose { position: DVec3::new(s.sin(), 1.7, -0.1), ..Pose::IDENTITY });
+    let given = Recording::from_samples([at(0.0), at(0.125), at(1.0 / 3.0)]).expect("samples");
+    assert_eq!((given.n_samples(), given.span_ps()), (3, (0, 333_333_333_333)));
+    // The numbers stay the same bits.
+    assert_eq!(given.pose(125_000_000_000), at(0.125).1);
+    let turned = Pose { orientation: glam::DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0), ..Pose::IDENTITY };
+    for (samples, says) in [
+        (vec![], "expected at least one sample"),
+        (vec![at(1.0), at(0.5)], "line 2, time_s: expected 1 s or more"),
+        (vec![at(0.0), at(f64::NAN)], "line 2, time_s: expected a finite number"),
+        (vec![at(-1.0)], "line 1, time_s: expected 0 to"),
+        (vec![(0.0, turned)], "expected a quaternion of length 1, found 2"),
+    ] {
+        let error = Recording::from_samples(samples).expect_err(says).to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}

@@ -1,16 +1,22 @@
-//! Errors of a comparison and of its file of rows.
+//! The error of studies of many experiments.
 
 use crate::experiment_file::FileError;
 use crate::sweep::SweepError;
+use pxpl5_run::{ExperimentError, HeadError};
 use thiserror::Error;
+use tracking::rig::RigError;
 
-/// Error that prevents a comparison.
+/// An error that prevents a study: a comparison, a limit over a setting, a published figure of a pipeline, or a
+/// measurement with the latency rig.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum CompareError {
+pub enum StudyError {
     /// A setting is invalid.
     #[error(transparent)]
-    Settings(#[from] FileError),
+    File(#[from] FileError),
+    /// An experiment of the study cannot run.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
     /// The number of fields is too small or too large.
     #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
     Fields {
@@ -80,5 +86,39 @@ pub enum CompareError {
         line: usize,
         /// Error of the parser.
         found: String,
+    },
+    /// The settings of the tracker are invalid.
+    #[error(transparent)]
+    Tracker(#[from] HeadError),
+    /// The tracker reported no low point of the pendulum, or the photodiode saw no bright pixel.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A requested frame was not shown completely.
+    #[error(
+        "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
+    )]
+    NotShown {
+        /// Number of frames that were requested at low points.
+        expected: usize,
+        /// Number of requested frames that were shown completely, according to the pipeline's records.
+        found: usize,
+    },
+    /// The photodiode cannot tell when a frame of this pipeline appears.
+    #[error("expected a pipeline whose frames a photodiode can distinguish, found {pipeline}: {reason}; {definition}")]
+    NoFrames {
+        /// Name of the pipeline.
+        pipeline: &'static str,
+        /// Reason why a step from dark to bright under the photodiode is not the start of a new frame.
+        reason: &'static str,
+        /// The pipeline's own definition of the time at which a picture is due.
+        definition: &'static str,
+    },
+    /// The line of the photodiode lies below the screen.
+    #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
+    Photodiode {
+        /// Number of lines on the screen.
+        lines: u32,
+        /// Number of the photodiode's line in the settings, counted from 0.
+        found: u32,
     },
 }

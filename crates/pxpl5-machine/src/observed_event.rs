@@ -1,0 +1,149 @@
+//! The observations of a run as one list of events with the names of their boards.
+
+use crate::board::Board;
+use crate::record::Record;
+use pxpl5_gp::{Stage, StageEdge};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{PictureNumber, RegionId, SurfaceId};
+use std::fmt;
+
+/// An observed event of a run, with its time and board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ObservedEvent {
+    /// Simulated time of the event.
+    pub time: Time,
+    /// The board on which the event happened.
+    pub board: Board,
+    /// The event, with the picture or message that it belongs to.
+    pub kind: ObservedKind,
+}
+
+/// The kinds of observed events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ObservedKind {
+    /// A program began or ended a stage of a picture.
+    Stage {
+        /// The stage of the pipeline.
+        stage: Stage,
+        /// The beginning or the end of the stage.
+        edge: StageEdge,
+        /// Number of the picture, as counted by the pipeline.
+        picture: PictureNumber,
+        /// Surface for which the stage draws, if the stage draws one eye at a time.
+        surface: Option<SurfaceId>,
+    },
+    /// A renderer started to copy a region that it had drawn.
+    Copied {
+        /// Number of the picture, as counted by the pipeline.
+        picture: PictureNumber,
+        /// Index of the region in the picture's grid of regions.
+        region: RegionId,
+        /// Execution time of the region's commands.
+        executed: Span,
+    },
+    /// The last message of a region arrived at a display.
+    Arrived {
+        /// Number of the picture, as counted by the pipeline.
+        picture: PictureNumber,
+        /// Index of the region in the picture's grid of regions.
+        region: RegionId,
+        /// The surface that shows the region.
+        surface: SurfaceId,
+    },
+    /// A display changed the visible buffer of a surface at the start of a display period.
+    Swapped {
+        /// The surface whose visible buffer changed.
+        surface: SurfaceId,
+        /// The buffer that is visible from this event on.
+        buffer: u8,
+    },
+    /// The first word of a ring message arrived. Only runs that record traffic have such events. The event's board is
+    /// the sender.
+    Message {
+        /// The board that receives the message.
+        to: Board,
+        /// Length in words of 32 bits, including the header.
+        words: u32,
+        /// Time at which the receiver finished taking the last word.
+        end: Time,
+    },
+}
+
+impl fmt::Display for ObservedEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}: {}", self.time, self.board, self.kind)
+    }
+}
+
+impl fmt::Display for ObservedKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stage { stage, edge, picture, surface } => {
+                write!(f, "{edge} of {stage}, picture {picture}")?;
+                surface.map_or(Ok(()), |surface| write!(f, ", surface {}", surface.0))
+            }
+            Self::Copied { picture, region, .. } => write!(f, "copy of region {}, picture {picture}", region.0),
+            Self::Arrived { picture, region, surface } => {
+                write!(f, "region {} complete, picture {picture}, surface {}", region.0, surface.0)
+            }
+            Self::Swapped { surface, buffer } => write!(f, "swap to buffer {buffer}, surface {}", surface.0),
+            Self::Message { to, words, .. } => write!(f, "message of {words} words to {to}"),
+        }
+    }
+}
+
+impl Record {
+    /// Returns all observed events in memory, in the order of time.
+    ///
+    /// These are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps. If
+    /// traffic was recorded, ring messages are included. The ports of boards are replaced by the boards' names.
+    #[must_use]
+    pub fn observed_events(&self) -> Vec<ObservedEvent> {
+        let observed = self.observation();
+        let board = |node| self.ports().board(node);
+        let stages = observed.marks.iter().map(|mark| ObservedEvent {
+            time: mark.time,
+            board: board(mark.node),
+            kind: ObservedKind::Stage {
+                stage: mark.stage,
+                edge: mark.edge,
+                picture: mark.picture,
+                surface: mark.surface,
+            },
+        });
+        let copied = observed.drawn.iter().map(|(renderer, region)| ObservedEvent {
+            time: region.copy_at,
+            board: Board::Renderer(*renderer),
+            kind: ObservedKind::Copied {
+                picture: region.target.picture,
+                region: region.target.region,
+                executed: region.executed,
+            },
+        });
+        let arrived = observed.arrivals.iter().map(|arrival| ObservedEvent {
+            time: arrival.last_part_at,
+            board: board(arrival.target.frame_buffer),
+            kind: ObservedKind::Arrived {
+                picture: arrival.target.picture,
+                region: arrival.target.region,
+                surface: arrival.surface,
+            },
+        });
+        let swapped = observed.swaps.iter().map(|swap| ObservedEvent {
+            time: self.period_start(board(swap.port), swap.tick),
+            board: board(swap.port),
+            kind: ObservedKind::Swapped { surface: swap.surface, buffer: swap.buffer },
+        });
+        let transfers = observed.traffic.iter().flat_map(|traffic| &traffic.transfers);
+        let messages = transfers.map(|transfer| ObservedEvent {
+            time: transfer.begin,
+            board: board(transfer.source),
+            kind: ObservedKind::Message { to: board(transfer.destination), words: transfer.words, end: transfer.end },
+        });
+        let mut events: Vec<_> = stages.chain(copied).chain(arrived).chain(swapped).chain(messages).collect();
+        // The sort is stable, so simultaneous events keep the order of the lists above.
+        events.sort_by_key(|event| event.time);
+        events
+    }
+}

@@ -1,0 +1,196 @@
+//! Machines, their boards and displays, their parameters, and what was observed of them.
+
+/// ```
+/// use pxpl5::{MachineConfig, Parameter};
+///
+/// // The machine of TR94 with more boards and a slower ring.
+/// let mut machine = MachineConfig::small_hmd().with_gps(20).with_renderers(8);
+/// machine.set("ring.word_ns", 100)?;
+/// machine.check()?;
+/// // Every parameter has a unit, a provenance and a source.
+/// let word: Option<Parameter> = machine.parameters().into_iter().find(|parameter| parameter.path == "ring.word_ns");
+/// assert_eq!(word.map(|word| (word.info.unit, word.info.source)), Some(("ns", "TR94")));
+/// # Ok::<(), pxpl5::ConfigError>(())
+/// ```
+pub use pxpl5_machine::MachineConfig;
+
+/// ```
+/// use pxpl5::{ConfigError, MachineConfig};
+///
+/// // An error names the nearest valid name or value.
+/// let error: ConfigError = MachineConfig::preset("smal-hmd").expect_err("no machine");
+/// assert!(error.to_string().contains("did you mean `small-hmd`?"));
+/// ```
+pub use pxpl5_machine::ConfigError;
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(30).run()?;
+/// let observed: &Observation = outcome.observation();
+/// let (arrivals, swaps): (&[Arrival], &[Swap]) = (&observed.arrivals, &observed.swaps);
+/// // A field has 20 regions, and two frame buffers swap.
+/// assert!(arrivals.len() >= 20 && swaps.len() >= 2);
+/// let stages: Vec<StageSpan> = outcome.stages();
+/// assert!(stages.iter().all(|stage| stage.end.is_none_or(|end| end >= stage.begin)));
+/// // The pictures that one frame buffer showed, and regions that came too late.
+/// let shown: Vec<Shown> = outcome.record().shown_by(swaps[0].port);
+/// let late: &[LateRegion] = &outcome.tally().first_late_regions;
+/// assert!(!shown.is_empty() && late.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_machine::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
+
+/// ```
+/// use pxpl5::{Board, TextError};
+///
+/// assert_eq!(Board::Renderer(3).to_string(), "renderer 3");
+/// assert_eq!("gp 12".parse(), Ok(Board::Gp(12)));
+/// let error: TextError = "gpu 1".parse::<Board>().expect_err("no board");
+/// println!("{error}");
+/// ```
+pub use pxpl5_machine::Board;
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{Traffic, Transfer};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(30);
+/// let outcome = experiment.record_traffic(true).run()?;
+/// let traffic: &Traffic = outcome.observation().traffic.as_deref().ok_or("traffic was recorded")?;
+/// let ports = outcome.record().ports();
+/// let Transfer { source, destination, words, .. } = traffic.transfers[0];
+/// println!("{} sends {words} words to {}", ports.board(source), ports.board(destination));
+/// // The same messages are events of the outcome.
+/// assert!(outcome.events().any(|event| matches!(event.kind, ObservedKind::Message { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_machine::{ObservedEvent, ObservedKind, Ports, Traffic, Transfer};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{EventDescription, Machine, Record};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(3);
+/// let mut machine: Machine = experiment.build()?;
+/// let next: EventDescription = machine.next_event_description().ok_or("a machine that was started")?;
+/// println!("{next}");
+/// machine.step_before(pxpl5::Time(1_000_000))?;
+/// let record: Record = machine.into_record();
+/// assert!(record.events() <= 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_machine::{EventDescription, Machine, Record};
+
+/// ```
+/// use pxpl5::{Blocked, Board, RunError, Time};
+///
+/// // A deadlock names the boards that wait, and the boards that they wait for.
+/// let wait = Blocked { board: Board::Renderer(3), waits_on: Some(Board::Display(0)), waits_for: "a port".to_owned() };
+/// assert_eq!(wait.to_string(), "renderer 3 waits for a port");
+/// let error = RunError::Deadlock { time: Time(0), blocked: vec![wait] };
+/// assert_eq!(error.blocked()[0].waits_on, Some(Board::Display(0)));
+/// ```
+pub use pxpl5_machine::{Blocked, RunError};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::Optimization;
+///
+/// // Without an optimization, a run takes longer and has the same result.
+/// let scene = scene::builtin("full-screen:12")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(12);
+/// let slow = experiment.clone().without(Optimization::Transfers).run()?;
+/// assert_eq!(slow.record().trace_hash(), experiment.run()?.record().trace_hash());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_machine::Optimization;
+
+/// ```
+/// use pxpl5::{MachineConfig, ParameterInfo, ParameterTable, Standing, Value};
+///
+/// let machine = MachineConfig::small_hmd();
+/// // A table is read by names too. Each entry states where its value comes from.
+/// let word: &ParameterInfo = machine.ring.entries()[0].info;
+/// assert_eq!(machine.ring.get(word.name)?, word.papers);
+/// assert_eq!("published".parse(), Ok(Standing::Published));
+/// assert_eq!(Value::Whole(50).to_string(), "50");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Standing, Value};
+
+/// ```
+/// use pxpl5::{Board, Level, NameError, TextError};
+///
+/// // An unknown name has a nearest valid name. A text in a wrong form has an expected form.
+/// let name: NameError = "cicle".parse::<Level>().expect_err("no level");
+/// assert_eq!(name.nearest(), "cycle");
+/// let text: TextError = "gpu".parse::<Board>().expect_err("no board");
+/// assert!(text.expected.starts_with("host, ring"));
+/// ```
+pub use pxpl5_sim::parameters::{NameError, TextError};
+
+pub use pxpl5_machine::{PRESETS, Parameter};
+
+/// ```
+/// use pxpl5::{CodeVersion, PRESETS, Preset};
+///
+/// // The machines of the papers.
+/// let preset: Preset = "small-hmd".parse()?;
+/// assert!(PRESETS.contains(&preset) && preset.about.contains("TR94"));
+/// assert_eq!("scheduled".parse(), Ok(CodeVersion::Scheduled));
+/// # Ok::<(), pxpl5::NameError>(())
+/// ```
+pub use pxpl5_machine::Preset;
+
+pub use pxpl5_gp::CodeVersion;
+
+/// ```
+/// use pxpl5::{FrameBufferConfig, HiResConfig, LcdConfig, MachineConfig, NtscDisplay, OledConfig, Panel, PanelConfig};
+///
+/// // The same machine with one of five displays.
+/// let mut machine = MachineConfig::small_hmd();
+/// machine.displays = vec![Box::new(OledConfig::PAPERS)];
+/// assert!(machine.check().is_ok());
+/// let names = [
+///     machine.displays[0].name(),
+///     pxpl5::device::DisplayConfig::name(&HiResConfig::PAPERS),
+///     pxpl5::device::DisplayConfig::name(&LcdConfig::PAPERS),
+///     pxpl5::device::DisplayConfig::name(&PanelConfig::PAPERS),
+///     pxpl5::device::DisplayConfig::name(&FrameBufferConfig::NTSC),
+/// ];
+/// assert_eq!(names, ["oled-90", "hires", "lcd-120", "panel", "ntsc"]);
+/// // A panel is described by numbers.
+/// let numbers = pxpl5::PanelNumbers::of(&OledConfig::PAPERS);
+/// assert!(numbers.check("oled").is_ok());
+/// # let _: (Option<Panel>, Option<NtscDisplay>) = (None, None);
+/// ```
+pub use pxpl5_framebuffer::{
+    FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, OledConfig, Panel, PanelConfig, PanelNumbers,
+};
+
+/// ```
+/// use pxpl5::{Span, Time, TraceHash};
+///
+/// // Times are whole picoseconds.
+/// let begin = Time(0) + Span::from_us(3);
+/// assert_eq!(begin.since(Time(1_000_000)), Span::from_us(2));
+/// assert_eq!("00000000000000ff".parse(), Ok(TraceHash(255)));
+/// ```
+pub use pxpl5_sim::{Span, Time, TraceHash};
+
+/// ```
+/// use pxpl5::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
+///
+/// // On a machine with one stereo display, surfaces are eyes.
+/// assert_eq!(SurfaceId::from(Eye::Right), SurfaceId(1));
+/// assert_eq!("right".parse(), Ok(Eye::Right));
+/// assert_eq!(PeriodNumber(3).next(), PeriodNumber(4));
+/// // Pipelines number pictures and views.
+/// assert!(PictureNumber(1) < PictureNumber(2) && ViewNumber(1) < ViewNumber(2));
+/// ```
+pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};

@@ -1,0 +1,227 @@
+//! Results of runs: latencies, errors in pixels, the use of boards, and pictures.
+
+/// ```
+/// use pxpl5::prelude::*;
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
+/// // The trait `Measured` adds methods to an outcome: one quantity by its name, all results as numbers, and a picture.
+/// assert_eq!(outcome.quantity("missed_retraces")?, Some(0.0));
+/// assert_eq!(outcome.report().missed_retraces, Some(0));
+/// assert_eq!(outcome.picture(Eye::Left).map(|picture| picture.dimensions()), Some((640, 480)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::Measured;
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{LatencyPartStatistics, SurfaceStatistics, TooHeavy};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let outcome = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?;
+/// let report: Report = outcome.report();
+/// let parts: &[LatencyPartStatistics] = &report.latency_parts_ms;
+/// for part in parts {
+///     println!("{}: {:.2} ms", part.name, part.statistics.statistics.mean);
+/// }
+/// // Both eyes and the pair.
+/// let eyes: &[SurfaceStatistics] = &report.latency_by_eye_ms;
+/// assert_eq!(eyes.len(), 3);
+/// // The scene is light enough.
+/// let heavy: Option<&TooHeavy> = report.too_heavy.as_ref();
+/// assert!(heavy.is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::{LatencyPartStatistics, Report, SurfaceStatistics, TooHeavy};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{Budget, EyeReport, HeadReport, Raster, Reprojection, ReprojectionReport, Every, Warp};
+/// use std::sync::Arc;
+///
+/// // A device moves each picture to the newest pose.
+/// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
+/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?;
+/// let head = head.before(Raster::Reprojected(Reprojection::new(Warp::Rotation, Every::Line)));
+/// let scene = scene::builtin("full-screen:4")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
+/// let report = experiment.head(head).run()?.report();
+/// let head: HeadReport = report.head.ok_or("a tracked head")?;
+/// let budget: Budget = head.end_to_end;
+/// assert!(budget.total_ms > 0.0);
+/// let eye: Option<EyeReport> = report.eye;
+/// let device: Option<ReprojectionReport> = eye.and_then(|eye| eye.reprojection);
+/// assert!(device.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::{Budget, EyeReport, HeadReport, ReprojectionReport};
+
+/// ```
+/// use pxpl5::{QUANTITIES, Quantity, prelude::*};
+///
+/// // All quantities are in a list.
+/// let first: &Quantity = &QUANTITIES[0];
+/// println!("{}: {}", first.name, first.definition);
+/// let measure: Measure = "latency_ms.mean".parse()?;
+/// println!("{measure}: {}", measure.definition());
+/// let scene = scene::builtin("full-screen:12")?;
+/// let results = Results::of_run(Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?);
+/// // One NTSC field is 1001/60000 s.
+/// assert!((measure.of(&results).ok_or("pictures were shown")? - 16.683).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::{Measure, QUANTITIES, Quantity, Results};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{CriticalPath, PathPart, Resource, Utilisation};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let report = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?.report();
+/// // The resources that the latency waits for, the largest share first.
+/// let path: CriticalPath = report.critical_path.ok_or("pictures were shown")?;
+/// println!("limited by {}", path.limited_by);
+/// assert!(path.share(Resource::Ports) > 0.0);
+/// let largest: &PathPart = &path.parts[0];
+/// assert!(path.parts.iter().all(|part| part.share <= largest.share));
+/// let busy: Utilisation = report.utilisation.ok_or("the machine ran")?;
+/// assert!(busy.renderers.executing.max <= 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::{CriticalPath, PathPart, Resource, Utilisation};
+
+/// ```
+/// use pxpl5::LatencyCurve;
+/// use pxpl5::tracking::motion::Pan;
+///
+/// // The error that a latency of 50 ms alone causes, at a turn of 200 degrees a second: 10 degrees.
+/// let curve = LatencyCurve::of(&Pan::at(200.0), 50, 2, 1.0);
+/// // 320 px are 30 degrees from the middle, and the middle moves by f tan(10 deg).
+/// let middle = 320.0 / 30f64.to_radians().tan() * 10f64.to_radians().tan();
+/// assert!((curve.mean_px() / middle - 1.0).abs() < 0.3, "{}", curve.mean_px());
+/// ```
+pub use pxpl5_measure::LatencyCurve;
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{Cause, ErrorCauses, ErrorPart, FieldMisregistration, PixelErrors, Registration, Showing};
+/// use std::sync::Arc;
+///
+/// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
+/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?;
+/// let scene = scene::builtin("full-screen:4")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
+/// let outcome = experiment.head(head).run()?;
+/// let errors: PixelErrors = outcome.pixel_errors().ok_or("a tracked head")?;
+/// assert!(errors.pixels.mean > 0.0);
+/// let fields: &[FieldMisregistration] = &errors.by_field;
+/// assert!(!fields.is_empty() && Registration::of(&outcome).is_some());
+/// // The part of the error that each cause contributes.
+/// let causes = ErrorCauses::of(&outcome, Showing::Plain, &errors).ok_or("a tracked head")?;
+/// let latency: Option<&ErrorPart> = causes.parts_px.iter().find(|part| part.cause == Cause::Latency);
+/// assert!(latency.is_some_and(|part| part.px > 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::{ErrorCauses, ErrorPart, FieldMisregistration, PixelErrors, Registration, Showing};
+
+/// ```
+/// use pxpl5::Percentiles;
+///
+/// let hundred = Percentiles::of((1..=100).map(f64::from));
+/// assert_eq!((hundred.mean, hundred.max), (50.5, 100.0));
+/// ```
+pub use pxpl5_measure::Percentiles;
+
+/// ```
+/// use pxpl5::{DefinedStatistics, Samples, Statistics};
+///
+/// let latencies = Statistics::of([49.0, 50.0, 51.0].into_iter());
+/// assert_eq!((latencies.n, latencies.mean, latencies.sd), (3, 50.0, 1.0));
+/// let defined: DefinedStatistics = latencies.defined("from TRANSFORM to the swap, ms");
+/// assert_eq!(defined.statistics.min, 49.0);
+/// # let _ = Samples::keeping(1);
+/// ```
+pub use pxpl5_run::{DefinedStatistics, Samples, Statistics};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{DuePictures, LATENCY_PARTS, LatencyParts, PartDefinition, PictureResult, PictureTimes, ResultWindow, Summary};
+///
+/// let scene = scene::builtin("full-screen:12")?;
+/// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).run()?;
+/// // Results cover a window after start-up. In the window, all due pictures were shown.
+/// let (window, due): (ResultWindow, DuePictures) = outcome.window().zip(outcome.due()).ok_or("a window")?;
+/// assert!(window.periods() > 0 && due.not_shown() == 0);
+/// let picture: &PictureTimes = outcome.complete_pictures().next().ok_or("a picture")?;
+/// assert!(picture.shown_at > picture.transform_at && picture.end == PictureResult::Shown);
+/// // The parts of a latency have definitions.
+/// let part: &PartDefinition = &LATENCY_PARTS[0];
+/// println!("{part:?}");
+/// let parts: Vec<LatencyParts> = outcome.latency_parts();
+/// let summary: Summary = outcome.summary();
+/// assert_eq!(parts.len() as u64, summary.latency_ms().n);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_run::{
+    DuePictures, LATENCY_PARTS, LatencyParts, PartDefinition, PictureResult, PictureTimes, ResultWindow, Summary,
+    WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
+};
+
+/// ```
+/// use pxpl5::{HeadSum, Keep, prelude::*};
+/// use std::sync::Arc;
+///
+/// // A run of any length in constant memory. The observer computes the errors while the run goes on.
+/// let head = Head::new(Arc::new(from_fn(|_| Pose::IDENTITY)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
+/// let scene = scene::builtin("full-screen:4")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
+/// let long = experiment.head(head).keep(Keep::Statistics).observed_by(Some(HeadSum::begin));
+/// assert!(long.run()?.report().head.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::HeadSum;
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{FinalResults, Keep, ObserverFactory, StreamingObserver};
+/// use std::any::Any;
+///
+/// // An observer that counts pictures while the run goes on.
+/// #[derive(Debug, Default)]
+/// struct Count(usize);
+///
+/// impl StreamingObserver for Count {
+///     fn take(&mut self, results: &FinalResults<'_>) {
+///         self.0 += results.pictures.len();
+///     }
+///     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+///         Box::new(self.0)
+///     }
+/// }
+///
+/// let begin: ObserverFactory = || Box::<Count>::default();
+/// let scene = scene::builtin("full-screen:12")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
+/// let outcome = experiment.keep(Keep::Statistics).observed_by(Some(begin)).run()?;
+/// assert!(outcome.said::<usize>().is_some_and(|pictures| *pictures > 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
+
+/// ```
+/// use pxpl5::prelude::*;
+/// use pxpl5::{Raster, RasterOffsets};
+/// use std::sync::Arc;
+///
+/// // VDRT: the raster is shifted by the error of the pose.
+/// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
+/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.before(Raster::Vdrt);
+/// let scene = scene::builtin("full-screen:4")?;
+/// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
+/// let outcome = experiment.head(head).run()?;
+/// assert!(RasterOffsets::of(&outcome).is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::RasterOffsets;
+
+pub use pxpl5_measure::{picture, reproject, side_by_side};
