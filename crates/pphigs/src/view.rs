@@ -43,7 +43,7 @@ pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 
 
 /// The error for a message whose length does not match its header.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a view of {expected} words was expected, {found} were found")]
+#[error("view: expected {expected} words, found {found}")]
 pub struct ViewWordsError {
     /// Number of words according to the header, with the header's own words.
     pub expected: usize,
