@@ -33,7 +33,7 @@ export default {
       for (let n = 0; n < 6; n += 1) bytes[random(bytes.length)] = random(256);
       if (random(200) === 0) memory.grow(1);
       now += 1 + random(7);
-      if (checkpoints.take(now, step)) images.set(now, bytes.slice());
+      if (checkpoints.take(now, step)) images.set(now, new Uint8Array(memory.buffer.slice(0)));
       assert.ok(checkpoints.bytes <= limits.bytes && checkpoints.all.length <= limits.count);
       if (random(40) > 0) continue;
       const to = now - random(400);

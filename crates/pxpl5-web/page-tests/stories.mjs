@@ -90,7 +90,7 @@ export default {
     const [also, copied] = await run(colours);
     console.log(`   marked pixels: drawn ${drawn} in RENDER, drawn ${also} and copied ${copied} in COPY`);
     assert.ok(drawn > 200 && copied > 200);
-    assert.match(await text("region-legend"), /drawing.*on its way/s);
+    assert.match(await text("region-legend"), /renderer draws.*on its way/s);
     assert.ok(await run("return document.getElementById('region-legend').checkVisibility()"));
   },
 };
