@@ -85,7 +85,7 @@ export const STORIES = {
         title: "3. RENDER",
         say: "A renderer has a tiny processor for each of its 16,384 pixels, and all of them obey one command at once. A dashed green frame in the picture marks a region whose triangles are being drawn now.",
         until: "draw", ms: 200, slower: 100, show: ["diagram", "regions", "age"],
-        paused: "Drawing commands travel from GPs to renderers.",
+        paused: "The renderers draw new regions, while they still hand over the pixels of others.",
       },
       {
         title: "4. COPY",
