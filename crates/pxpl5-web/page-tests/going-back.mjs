@@ -36,7 +36,7 @@ export default {
       if (checkpoints.take(now, step)) images.set(now, new Uint8Array(memory.buffer.slice(0)));
       assert.ok(checkpoints.bytes <= limits.bytes && checkpoints.all.length <= limits.count);
       if (random(40) > 0) continue;
-      const to = now - random(400);
+      const to = now - random(60);
       const expected = checkpoints.all.findLast(({ at }) => at <= to);
       const found = checkpoints.back(to);
       assert.equal(found?.at, expected?.at);
