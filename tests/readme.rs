@@ -76,6 +76,21 @@ fn the_summary_of_the_guide_leaves_no_page_out() {
     }
 }
 
+/// Files to be made are in the last column of the table, after the files at which a task begins.
+#[test]
+fn every_file_at_which_a_first_task_begins_is_there() {
+    let page = read("docs/first-tasks.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    assert_eq!(rows.len(), 10, "ten tasks");
+    for row in rows {
+        let begin = row.split(" | ").nth(2).unwrap_or_else(|| panic!("no third column: {row}"));
+        let files = begin.split('`').skip(1).step_by(2).filter(|name| name.contains('/'));
+        for file in files {
+            assert!(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file).exists(), "{file} is not there");
+        }
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn the_table_of_scripts_has_each_script_once() {
