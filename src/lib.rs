@@ -88,10 +88,10 @@ pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Every, Experiment,
     ExperimentError, FIELDS_RANGE, FinalResults, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError,
     HeadViews, Host, Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, ObserverFactory,
-    Outcome, Pause, PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
-    RenderingControl, Reprojection, ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting, Source,
-    Statistics, Stepper, StreamingObserver, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES,
-    WINDOW_DEFINITION, Warp, out_of_range,
+    Outcome, Pause, PictureResult, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, PolicyError,
+    PolicyFrame, PolicyPipeline, Raster, RegionAssignment, RegionPolicy, Registry, RenderingControl, Reprojection,
+    ResultWindow, SampledPose, Samples, Setup, Slats, SlatsLighting, Source, Statistics, Stepper, StreamingObserver,
+    Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, Warp, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmSurfaces, results, timeline, trace_export};

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 
 from . import _html, _native
+from ._checks import Strict
+from ._names import MachineName
 from ._native import Table
 from ._tables import table_of
 
@@ -60,7 +62,7 @@ def parameter_table(parameters: list[Parameter]) -> Table:
     return table_of(rows, PARAMETER_DEFINITIONS)
 
 
-class Machine(Mapping[str, Parameter]):
+class Machine(Strict, Mapping[str, Parameter]):
     """A machine: a preset, and the numbers of it that are otherwise.
 
     ``machine["gp.triangle_ns"]`` is a :class:`Parameter`; ``machine["gp.triangle_ns"] = 30_000`` changes its value, and
@@ -71,7 +73,7 @@ class Machine(Mapping[str, Parameter]):
     Raises :class:`SettingError` for a preset, path or value that no machine has, with the nearest that there is.
     """
 
-    def __init__(self, preset: str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
+    def __init__(self, preset: MachineName | str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
         self._preset = preset
         self._changes: dict[str, float] = {}
         self._known = _native.machine_parameters(preset, dict(changes or {}))

@@ -6,13 +6,15 @@ use crate::picture::Picture;
 use crate::table::{Column, Table};
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
+use pxpl5::arp::address_recalculation::AddressRecalculationPipeline;
+use pxpl5::arp::pictures::cross;
 use pxpl5::firmware::{Layout, PictureNumber};
 use pxpl5::measure::{Measure, Measured, side_by_side};
 use pxpl5::results::{columns, origin, rows};
 use pxpl5::timeline::{TimelineOptions, svg};
 use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
-use pxpl5::{PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
+use pxpl5::{Eye, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -117,6 +119,45 @@ impl Outcome {
         let measure = Measure::named(name)
             .map_err(|nearest| wrong_setting(format!("there is no quantity `{name}`; did you mean `{nearest}`?")))?;
         Ok(measure.of(self.results(py)?))
+    }
+
+    /// Returns true if old records of the run were discarded, so that tables have only the last pictures.
+    fn has_discarded_records(&self, py: Python<'_>) -> PyResult<bool> {
+        self.look(py, pxpl5::Outcome::has_discarded_records)
+    }
+
+    /// Returns the advice of the library if the machine was too slow for its scene, or if no picture was complete in
+    /// time. Returns None otherwise.
+    fn advice(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let (outcome, report) = self.run(py)?;
+        if let Some(too_heavy) = &report.too_heavy {
+            return Ok(Some(too_heavy.to_string()));
+        }
+        let is_empty = outcome.tally().complete == 0;
+        Ok(is_empty.then(|| "no picture was complete in time; the run has no latency".to_owned()))
+    }
+
+    /// Returns the six cube faces that an eye's display memory shows at the end, unfolded into a cross of 4 x 3 faces.
+    /// Returns None for a display without such memories.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for an eye or a memory that does not exist.
+    fn face(&self, py: Python<'_>, eye: &str, memory: usize) -> PyResult<Option<Picture>> {
+        let eye = match eye {
+            "left" => Eye::Left,
+            "right" => Eye::Right,
+            _ => return Err(wrong_setting(format!("eye: expected left or right, found {eye}"))),
+        };
+        let (outcome, _) = self.run(py)?;
+        let Some(display) = outcome.record().display_of_kind::<AddressRecalculationPipeline>() else {
+            return Ok(None);
+        };
+        let memories = display.memories(eye);
+        let Some(memory) = memories.get(memory) else {
+            let last = memories.len().saturating_sub(1);
+            return Err(wrong_setting(format!("memory: expected 0 to {last}, found {memory}")));
+        };
+        let picture = py.detach(|| cross(&memory.shown_faces(), 0));
+        Picture::of(py, picture, self.texts(py)?).map(Some)
     }
 
     /// Returns all measured quantities by name. The value is None for a quantity that the run does not have.

@@ -87,8 +87,9 @@ pub use outcome::Outcome;
 pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{
-    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp,
-    RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, PolicyError,
+    PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, RenderingControl, Slats, SlatsLighting, Viewpoint,
+    region_at,
 };
 pub use pxpl5_display::{Aim, LightTimes};
 pub use raster::Raster;
