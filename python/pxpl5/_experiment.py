@@ -50,18 +50,9 @@ class Made:
     ) -> None:
         """Sets what keywords say; a key whose value is None is not set."""
         self._put_pipeline(pipeline)
-        if isinstance(scene, Scene):
-            self.scene = scene
-            self.put("scene", "full-screen:1")
-        elif scene is not None:
-            self.put("scene", fspath(scene))
+        self._put_scene(scene)
         self._put_machine(machine)
-        if isinstance(head, str):
-            self.put("head.motion", head)
-        elif head is not None:
-            self.motion = head.moving()
-            for path, value in head.settings().items():
-                self.put(path, value)
+        self._put_head(head)
         for path, value in keys.items():
             if value is not None:
                 self.put(path.replace("__", "."), value)
@@ -72,16 +63,39 @@ class Made:
             self.policy = pipeline.policy
             self.phong = pipeline.shading == "phong"
             self.put("pipeline", "rendering-control")
-        elif pipeline is not None:
+        elif isinstance(pipeline, str):
             self.put("pipeline", pipeline)
+        elif pipeline is not None:
+            raise SettingError(f"pipeline: expected a name or a PolicyPipeline, found {pipeline!r}")
+
+    def _put_scene(self, scene: str | PathLike[str] | Scene | None) -> None:
+        if isinstance(scene, Scene):
+            self.scene = scene
+            self.put("scene", "full-screen:1")
+        elif isinstance(scene, (str, PathLike)):
+            self.put("scene", fspath(scene))
+        elif scene is not None:
+            raise SettingError(f"scene: expected a name, a path or a Scene, found {scene!r}")
+
+    def _put_head(self, head: str | Head | None) -> None:
+        if isinstance(head, str):
+            self.put("head.motion", head)
+        elif isinstance(head, Head):
+            self.motion = head.moving()
+            for path, value in head.settings().items():
+                self.put(path, value)
+        elif head is not None:
+            raise SettingError(f"head: expected the name of a motion or a Head, found {head!r}")
 
     def _put_machine(self, machine: str | Machine | None) -> None:
         if isinstance(machine, Machine):
             self.put("machine.preset", machine.preset)
             for path, value in machine.changes.items():
                 self.put(f"machine.{path}", value)
-        elif machine is not None:
+        elif isinstance(machine, str):
             self.put("machine.preset", machine)
+        elif machine is not None:
+            raise SettingError(f"machine: expected the name of a preset or a Machine, found {machine!r}")
 
     def check_scene(self, keys: Mapping[str, object]) -> None:
         """A scene that was given as such is drawn as it is."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
+from difflib import get_close_matches
 
 from . import _html, _native
 from ._checks import Strict
@@ -134,7 +135,8 @@ class Machine(Strict, Mapping[str, Parameter]):
         for parameter in self.parameters:
             if parameter.path == path:
                 return parameter
-        raise KeyError(path)
+        nearest = get_close_matches(path, list(self), 1, 0.0)
+        raise KeyError(f"there is no parameter `{path}`; did you mean `{nearest[0]}`?")
 
     def __iter__(self) -> Iterator[str]:
         return (parameter.path for parameter in self.parameters)

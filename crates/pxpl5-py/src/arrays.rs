@@ -3,6 +3,7 @@
 
 use crate::errors::wrong_setting;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::Borrowed;
 use pyo3::prelude::*;
 
 /// Returns a value as an array of shape (n, columns) with real numbers.
@@ -93,4 +94,31 @@ fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResu
 fn shape_text(shape: &[usize]) -> String {
     let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
     if sizes.len() == 1 { format!("({},)", sizes[0]) } else { format!("({})", sizes.join(", ")) }
+}
+
+/// A whole number of 0 or more from Python.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Count(pub(crate) u64);
+
+impl<'py> FromPyObject<'_, 'py> for Count {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        value.extract::<u64>().map(Self).map_err(|_| {
+            let found = value.repr().map_or_else(|_| "an object".to_owned(), |text| text.to_string());
+            wrong_setting(format!("expected a whole number of 0 or more, found {found}"))
+        })
+    }
+}
+
+impl Count {
+    /// Returns the number as `u32`. A greater number becomes the greatest `u32`, which no picture or slice has.
+    pub(crate) fn small(self) -> u32 {
+        u32::try_from(self.0).unwrap_or(u32::MAX)
+    }
+
+    /// Returns the number as `usize`. A greater number becomes the greatest `usize`.
+    pub(crate) fn size(self) -> usize {
+        usize::try_from(self.0).unwrap_or(usize::MAX)
+    }
 }

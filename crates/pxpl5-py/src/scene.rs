@@ -1,6 +1,6 @@
 //! Scenes for Python: built-in scenes, model files and arrays.
 
-use crate::arrays::{reals2, wholes2};
+use crate::arrays::{Count, reals2, wholes2};
 use crate::catalogue::python;
 use crate::errors::wrong_setting;
 use crate::table::escaped;
@@ -159,8 +159,8 @@ impl Scene {
     /// similar.
     ///
     /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
-    fn decimated(&self, py: Python<'_>, primitives: usize) -> PyResult<Self> {
-        py.detach(|| self.scene.decimated(primitives)).map(Self::of).map_err(wrong_setting)
+    fn decimated(&self, py: Python<'_>, primitives: Count) -> PyResult<Self> {
+        py.detach(|| self.scene.decimated(primitives.size())).map(Self::of).map_err(wrong_setting)
     }
 
     /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. A scene of closed

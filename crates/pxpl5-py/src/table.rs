@@ -189,7 +189,13 @@ impl Table {
     /// with None for missing values. The numbers are copied, unlike with Arrow's own readers.
     ///
     /// Raises KeyError with the existing names.
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(name) = name.extract::<&str>() else {
+            let found = name.repr()?;
+            return Err(PyKeyError::new_err(format!(
+                "expected the name of a column, found {found}; row({found}) returns a row"
+            )));
+        };
         let column = self.batch.column(self.column_index(name)?);
         // NumPy has no missing integers, so a column with missing values becomes float64.
         if let Some(whole) = column.as_any().downcast_ref::<Int64Array>() {
@@ -209,13 +215,13 @@ impl Table {
     /// Returns the row with index ``number``, from 0, as a dictionary. A missing value is None.
     ///
     /// Raises IndexError for a number beyond the last row.
-    fn row<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyDict>> {
-        if number >= self.batch.num_rows() {
-            let rows = self.batch.num_rows();
+    fn row<'py>(&self, py: Python<'py>, number: i64) -> PyResult<Bound<'py, PyDict>> {
+        let rows = self.batch.num_rows();
+        let Some(number) = usize::try_from(number).ok().filter(|number| *number < rows) else {
             return Err(pyo3::exceptions::PyIndexError::new_err(format!(
-                "expected a row below {rows}, found {number}"
+                "expected a row below {rows} and from 0, found {number}"
             )));
-        }
+        };
         let row = PyDict::new(py);
         for (name, column) in self.names().iter().zip(self.batch.columns()) {
             row.set_item(name, cell(py, column, number)?)?;
@@ -290,7 +296,7 @@ impl Table {
 
     /// Returns all rows as dictionaries, in order.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        (0..self.batch.num_rows()).map(|number| self.row(py, number)).collect()
+        (0..self.batch.num_rows()).map(|number| self.row(py, number as i64)).collect()
     }
 
     /// Returns the first rows as HTML for notebooks. The definitions of the columns are tooltips.
