@@ -1,10 +1,10 @@
 //! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
 
 use crate::percentiles::Percentiles;
-use pxpl5_display::Display;
 use pxpl5_run::{Raster, Reprojection};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Display;
 use serde::Serialize;
 use std::fmt;
 

@@ -1,0 +1,40 @@
+//! Renderer of the six faces of a cube around the eye. It takes no simulated time, and serves as an ideal source of
+//! pictures for address recalculation.
+//!
+//! ```text
+//!  triangles --> [ seen from the eye, axes of a face ] --> [ three edges, 1/w: planes over the face ] --> rows of texels --> FaceSet
+//!    eye ------------^                  six times                                                          nearest wins
+//! ```
+//!
+//! # Behaviour
+//!
+//! - [`CubeView::draw`] draws triangles as seen from an eye position. The faces may already contain other triangles.
+//!   Each texel shows the nearest triangle. If two triangles are equally near, the first one is visible. The faces are
+//!   parallel to the world's axes, whatever the orientation of the head.
+//! - A texel shows the triangle at the texel's middle. This holds for guard texels as well: the tangent of a face's
+//!   half angle is the ratio of all texels to inner texels.
+//! - Triangles are not clipped. Edges and 1/w are linear functions over a face, even for corners behind the eye. Parts
+//!   of a triangle before the near plane or beyond the far plane are not drawn.
+//! - The depth is z/w along the axis of the face in 24 bits, rounded down. All faces and memories have the same near
+//!   and far plane, so their depths can be compared.
+//! - If two triangles share an edge, each texel middle on this edge belongs to exactly one of the triangles. Both
+//!   triangles compute the edge from the same two corners, with opposite signs. Bit-identical corners therefore leave
+//!   no cracks.
+//! - Colours are interpolated between the corners in the plane of the triangle.
+//!
+//! All computations are additions, products, quotients and roundings in double precision, so results are bit-identical
+//! on all hosts.
+//!
+//! # Not here
+//!
+//! - Lighting and materials. The caller gives corners with shaded colours.
+//! - Spheres.
+//! - The decision when a face is drawn (see module `address_recalculation::priority`).
+
+mod depth;
+mod edges;
+mod rows;
+mod view;
+
+pub use depth::{DepthError, DepthRange};
+pub use view::{Corner, CubeView, Drawing};
