@@ -9,7 +9,7 @@ use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pxpl5::scene::{self, Frame, HeadMotion, Hinge, Lighting, Placement, SceneParts, Sphere, Structure, Vertex};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use pythonize::depythonize;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -187,10 +187,7 @@ impl Scene {
     }
 
     /// Returns the function and the arguments that make an equal scene, for the module ``pickle``.
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>, Bound<'py, PyAny>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let arrays = PyDict::new(py);
         arrays.set_item("vertices", self.vertices(py))?;
         arrays.set_item("normals", self.normals(py))?;
@@ -199,7 +196,7 @@ impl Scene {
         arrays.set_item("spheres", self.spheres(py))?;
         arrays.set_item("sphere_colours", table(py, self.scene.spheres().iter().map(|sphere| sphere.colour)))?;
         let rest = python(py, &Rest::of(&self.scene))?;
-        Ok((py.import("pxpl5._pickle")?.getattr("scene")?, (arrays, rest)))
+        Ok((py.import("pxpl5._pickle")?.getattr("scene")?, (arrays, rest).into_pyobject(py)?))
     }
 
     /// Returns a text that states the name of the scene and its numbers of triangles and spheres.
