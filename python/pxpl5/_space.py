@@ -100,6 +100,8 @@ def _flat(base: Mapping[str, object]) -> Iterator[tuple[str, object]]:
         if isinstance(value, Machine):
             yield "machine.preset", value.preset
             yield from ((f"machine.{number}", setting) for number, setting in value.changes.items())
+        elif path == "measure" and isinstance(value, str):
+            yield path, [value]
         elif path == "machine" and isinstance(value, str):
             yield "machine.preset", value
         else:

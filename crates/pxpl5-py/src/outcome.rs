@@ -123,7 +123,10 @@ impl Outcome {
 
     /// Returns true if old records of the run were discarded, so that tables have only the last pictures.
     fn has_discarded_records(&self, py: Python<'_>) -> PyResult<bool> {
-        self.look(py, pxpl5::Outcome::has_discarded_records)
+        self.look(py, |outcome| {
+            let kept = outcome.pictures().len() as u64;
+            outcome.has_discarded_records() || kept < outcome.tally().pictures
+        })
     }
 
     /// Returns the advice of the library if the machine was too slow for its scene, or if no picture was complete in

@@ -47,6 +47,10 @@ pub(crate) struct Table {
 impl Table {
     /// Creates a table from columns of equal length.
     pub(crate) fn of(columns: Vec<Column>) -> PyResult<Self> {
+        // A batch without columns needs its own constructor, because no column has the number of rows.
+        if columns.is_empty() {
+            return Ok(Self { batch: RecordBatch::new_empty(Arc::new(Schema::empty())) });
+        }
         let fields = columns.iter().map(|column| {
             let about = HashMap::from([("about".to_owned(), column.about.clone())]);
             Field::new(&column.name, column.values.data_type().clone(), true).with_metadata(about)
