@@ -2,10 +2,11 @@
 
 use crate::attended::{Progress, attended};
 use crate::catalogue::python;
-use crate::errors::{failed_run, raised, wrong_setting};
+use crate::errors::wrong_setting;
 use crate::frames::{Frames, film_bytes};
-use crate::motion::{CallableMotion, Motion};
-use crate::outcome::Outcome;
+use crate::functions::PythonFunctions;
+use crate::motion::Motion;
+use crate::outcome::{Outcome, exception, outcome_of_run};
 use crate::policy::Asked;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -27,27 +28,6 @@ pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
     functions: PythonFunctions,
-}
-
-/// The Python functions that a run calls.
-#[derive(Clone, Default)]
-pub(crate) struct PythonFunctions {
-    /// Function that computes the head's motion, or `None` for another motion.
-    motion: Option<Arc<CallableMotion>>,
-    policy: Option<Arc<Asked>>,
-}
-
-impl PythonFunctions {
-    /// Raises the exception that a function has raised, if there is one.
-    pub(crate) fn check(&self) -> PyResult<()> {
-        self.motion.iter().try_for_each(|called| called.check())?;
-        self.policy.iter().try_for_each(|asked| asked.check())
-    }
-
-    fn has_raised(&self) -> bool {
-        self.motion.as_ref().is_some_and(|called| called.has_raised())
-            || self.policy.as_ref().is_some_and(|asked| asked.has_raised())
-    }
 }
 
 #[pymethods]
@@ -140,7 +120,7 @@ impl Experiment {
         let result = attended(py, progress, true, move |told| run(&native, workstation, functions, told));
         // An exception of a Python function takes precedence over the error that it causes in the run.
         self.functions.check()?;
-        outcome(py, result?, &self.plan.measure)
+        outcome_of_run(py, result?, &self.plan.measure)
     }
 
     /// Begins the run and returns a stepper, which advances the run on request. ``keep_everything`` is as in
@@ -244,18 +224,6 @@ impl Experiment {
     }
 }
 
-/// Returns the outcome of a run, or raises the exception for its error.
-pub(crate) fn outcome(
-    py: Python<'_>,
-    result: Result<pxpl5::Outcome, Box<ExperimentError>>,
-    measures: &[Measure],
-) -> PyResult<Outcome> {
-    match result {
-        Ok(outcome) => Ok(Outcome::of(outcome, measures)),
-        Err(error) => Err(exception(py, *error, measures)),
-    }
-}
-
 /// Greatest number of fields of a run that checks for Ctrl-C in every field.
 const LOOKED_AT: u64 = 20_000;
 
@@ -301,27 +269,5 @@ impl Host for StoppableHost {
 
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {
         self.workstation.pixel_worker()
-    }
-}
-
-/// Converts an error of the library to an exception, which carries the values measured until the error.
-fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
-    let text = error.to_string();
-    let (name, partial, needed) = match error {
-        ExperimentError::TooShort { needed, partial, .. } => ("TooShortError", partial, needed),
-        ExperimentError::Run { partial, .. } => ("RunError", partial, None),
-        ExperimentError::Stopped(_) => return failed_run(text),
-        _ => return wrong_setting(text),
-    };
-    // The exception carries the partial outcome and the number of fields that a run would need.
-    let exception = raised(name, &text);
-    let value = exception.value(py);
-    let partial = Py::new(py, Outcome::of(*partial, measures));
-    let set = partial
-        .and_then(|partial| value.setattr("_native", partial))
-        .and_then(|()| value.setattr("fields_needed", needed));
-    match set {
-        Ok(()) => exception,
-        Err(error) => error,
     }
 }

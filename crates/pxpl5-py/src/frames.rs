@@ -2,7 +2,7 @@
 
 use crate::attended::{Progress, STACK_BYTES};
 use crate::errors::{failed_run, wrong_setting};
-use crate::experiment::PythonFunctions;
+use crate::functions::PythonFunctions;
 use crate::picture::Picture;
 use crate::stepper::wait;
 use image::RgbImage;

@@ -26,6 +26,7 @@ mod command;
 mod errors;
 mod experiment;
 mod frames;
+mod functions;
 mod lab;
 mod motion;
 mod outcome;

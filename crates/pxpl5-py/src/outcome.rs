@@ -1,7 +1,7 @@
 //! Results of a run for Python: numbers, tables, pictures and drawings.
 
 use crate::catalogue::python;
-use crate::errors::{failed_run, wrong_setting};
+use crate::errors::{failed_run, raised, wrong_setting};
 use crate::picture::Picture;
 use crate::table::{Column, Table};
 use numpy::PyArray3;
@@ -14,7 +14,7 @@ use pxpl5::results::{columns, origin, rows};
 use pxpl5::timeline::{TimelineOptions, svg};
 use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
-use pxpl5::{Eye, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
+use pxpl5::{ExperimentError, Eye, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -77,6 +77,40 @@ impl Outcome {
 
     fn texts(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String)>> {
         Ok(origin(self.run(py)?.1))
+    }
+}
+
+/// Returns the outcome of a run, or raises the exception for its error.
+pub(crate) fn outcome_of_run(
+    py: Python<'_>,
+    result: Result<pxpl5::Outcome, Box<ExperimentError>>,
+    measures: &[Measure],
+) -> PyResult<Outcome> {
+    match result {
+        Ok(outcome) => Ok(Outcome::of(outcome, measures)),
+        Err(error) => Err(exception(py, *error, measures)),
+    }
+}
+
+/// Converts an error of the library to an exception, which carries the values measured until the error.
+pub(crate) fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
+    let text = error.to_string();
+    let (name, partial, needed) = match error {
+        ExperimentError::TooShort { needed, partial, .. } => ("TooShortError", partial, needed),
+        ExperimentError::Run { partial, .. } => ("RunError", partial, None),
+        ExperimentError::Stopped(_) => return failed_run(text),
+        _ => return wrong_setting(text),
+    };
+    // The exception carries the partial outcome and the number of fields that a run would need.
+    let exception = raised(name, &text);
+    let value = exception.value(py);
+    let partial = Py::new(py, Outcome::of(*partial, measures));
+    let set = partial
+        .and_then(|partial| value.setattr("_native", partial))
+        .and_then(|()| value.setattr("fields_needed", needed));
+    match set {
+        Ok(()) => exception,
+        Err(error) => error,
     }
 }
 

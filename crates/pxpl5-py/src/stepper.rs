@@ -6,6 +6,8 @@
 use crate::attended::{LOOK, STACK_BYTES};
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
+use crate::functions::PythonFunctions;
+use crate::outcome::outcome_of_run;
 use crate::picture::Picture;
 use pxpl5::machine::Board;
 use pxpl5::{ExperimentError, Pause, PeriodNumber, Stepper as Native, SurfaceId, Time};
@@ -145,7 +147,7 @@ fn board_named(name: &str) -> PyResult<Board> {
 pub(crate) struct Stepper {
     pub(crate) thread: MachineThread,
     /// Functions of Python that the run calls.
-    pub(crate) checks: crate::experiment::PythonFunctions,
+    pub(crate) checks: PythonFunctions,
     pub(crate) measures: Vec<pxpl5::Measure>,
 }
 
@@ -295,7 +297,7 @@ impl Stepper {
     fn finish(&self, py: Python<'_>) -> PyResult<crate::outcome::Outcome> {
         let result = self.thread.finish(py);
         self.checks.check()?;
-        crate::experiment::outcome(py, result?, &self.measures)
+        outcome_of_run(py, result?, &self.measures)
     }
 }
 
