@@ -1,20 +1,13 @@
 //! The pipelines of the papers. To add a pipeline, write it in a new file here or in a separate crate, and add a line
 //! to `entries`.
 
-mod face_cells;
-mod face_entries;
-mod face_keys;
-mod face_objects;
-mod face_plan;
-mod faces;
+pub(crate) mod faces;
 mod frameless;
-mod ideal_faces;
 mod jitp;
 mod region_policy;
 mod rendering_control;
 mod slats;
 
-pub use faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use region_policy::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
@@ -36,7 +29,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
-    all.extend(face_entries::ENTRIES);
+    all.extend(faces::ENTRIES);
     all
 }
 
