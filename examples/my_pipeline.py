@@ -1,18 +1,16 @@
 """A pipeline of my own: which renderer draws which region, decided by a function of mine in every frame."""
 
-from typing import Any
-
 import pxpl5
 
 Answer = list[tuple[int, int]]
 
 
-def in_turn(frame: dict[str, Any]) -> Answer:
+def in_turn(frame: pxpl5.PolicyFrame) -> Answer:
     """Region after region, renderer after renderer."""
     return [(region, region % frame["renderers"]) for region in range(len(frame["primitives"]))]
 
 
-def heaviest_first(frame: dict[str, Any]) -> Answer:
+def heaviest_first(frame: pxpl5.PolicyFrame) -> Answer:
     """The region with most primitives first, each to the renderer that has least to do."""
     load = [0] * frame["renderers"]
     answer = []

@@ -233,6 +233,33 @@ pub use pxpl5_run::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion
 pub use pxpl5_run::{Cause, Fingerprint};
 
 /// ```
+/// use pxpl5::firmware::RegionId;
+/// use pxpl5::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, prelude::*};
+///
+/// /// Draws region after region, with one renderer after the other.
+/// #[derive(Debug)]
+/// struct InTurn;
+///
+/// impl RegionPolicy for InTurn {
+///     fn name(&self) -> &str {
+///         "in-turn"
+///     }
+///
+///     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>> {
+///         let regions = 0..frame.primitives.len() as u16;
+///         Some(regions.map(|region| (RegionId(region), usize::from(region) % frame.renderers)).collect())
+///     }
+/// }
+///
+/// let pipeline = PolicyPipeline::new(std::sync::Arc::new(InTurn));
+/// let scene = scene::builtin("full-screen:12")?;
+/// let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
+/// assert!(experiment.run()?.latency().is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_run::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
+
+/// ```
 /// use pxpl5::{HeadPlace, prelude::*};
 ///
 /// // The motion is given in the world's coordinates, not relative to the start of the scene's own motion.

@@ -1,12 +1,14 @@
 """Executes the notebooks at a small size and keeps what they draw under target/notebooks, to be looked at.
 
-``python python/notebooks/execute.py [NAME ...]``; without names all. It ends with 1 when a cell fails or a notebook draws nothing.
+``python python/notebooks/execute.py [NAME ...]``; without names all. It ends with 1 when a cell fails or
+warns, and when a notebook draws nothing.
 """
 
 from __future__ import annotations
 
 import base64
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -32,10 +34,21 @@ def kept(notebook: nbformat.NotebookNode, name: str) -> int:
     return count
 
 
+def warnings_of(notebook: nbformat.NotebookNode) -> str:
+    """What the cells of a notebook wrote to standard error, without progress bars."""
+    streams = [output for cell in notebook.cells for output in cell.get("outputs", []) if output.output_type == "stream"]
+    lines = [line for stream in streams if stream.name == "stderr" for line in re.split(r"[\r\n]", stream.text)]
+    return "\n".join(line for line in lines if line.strip() and "it/s]" not in line and "%|" not in line and "?it" not in line)
+
+
 def execute(path: Path) -> None:
-    """Executes a notebook; raises what a cell raises."""
+    """Executes a notebook; raises what a cell raises, and ends the program when a cell warns or a private name is imported."""
     notebook = nbformat.read(path, as_version=4)
+    if any("pxpl5._" in cell.source for cell in notebook.cells):
+        raise SystemExit(f"{path.name} imports a private module")
     NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
+    if warnings_of(notebook):
+        raise SystemExit(f"{path.name} warns: {warnings_of(notebook)}")
     nbformat.write(notebook, OUT / path.name)
     pictures = kept(notebook, path.stem)
     if pictures == 0:

@@ -15,33 +15,59 @@ have a unit, a standing (published, derived, assumed), a range and a source: :at
 Everything that this package raises by itself is a :class:`Pxpl5Error`, with the words of the library: what, where, expected, found.
 """
 
-from ._errors import AssemblyError, Pxpl5Error, RunError, SettingError, SweepError, TooShortError
+from ._drawing import Drawing
+from ._errors import (
+    AssemblyError,
+    DiscardedError,
+    Pxpl5Error,
+    RunError,
+    SettingError,
+    SweepError,
+    TooShortError,
+    UnknownNameError,
+)
 from ._experiment import Experiment, PolicyPipeline
 from ._head import Head
 from ._lab import (
     Comparison,
     Limit,
+    OverLimit,
     builtin_scenes,
     compare,
     displays,
     figure_ids,
     figures,
     keys,
+    levels,
     limit,
+    limit_over,
     pipelines,
     presets,
     quantities,
+    readings,
+    rig,
     tracking_parameters,
 )
 from ._machine import Machine, Parameter
-from ._native import Motion, Picture, Processor, Program, Scene, Table, Volume, assemble, disassemble
-from ._outcome import Drawing, Outcome, Report, Statistics
-from ._sweep import Range, SweepResults, SweepSpace, sweep
+from ._native import Motion, Picture, Processor, Program, Scene, Table, Volume, assemble, disassemble, version
+from ._outcome import Differences, Outcome, Report, Statistics
+from ._space import Range, SweepSpace
+from ._stepper import Stepper
+from ._sweep import SweepResults, sweep
+from ._types import PolicyFrame
 from ._volume import draw_volume, volume_figures, volume_keys
 
+#: Version of the package and of the emulator in it.
+__version__ = version()
+
+del version
+
 __all__ = [
+    "__version__",
     "AssemblyError",
     "Comparison",
+    "Differences",
+    "DiscardedError",
     "Drawing",
     "Experiment",
     "Head",
@@ -49,8 +75,10 @@ __all__ = [
     "Machine",
     "Motion",
     "Outcome",
+    "OverLimit",
     "Parameter",
     "Picture",
+    "PolicyFrame",
     "PolicyPipeline",
     "Processor",
     "Program",
@@ -61,11 +89,13 @@ __all__ = [
     "Scene",
     "SettingError",
     "Statistics",
+    "Stepper",
     "SweepError",
     "SweepResults",
     "SweepSpace",
     "Table",
     "TooShortError",
+    "UnknownNameError",
     "Volume",
     "assemble",
     "builtin_scenes",
@@ -76,10 +106,14 @@ __all__ = [
     "figure_ids",
     "figures",
     "keys",
+    "levels",
     "limit",
+    "limit_over",
     "pipelines",
     "presets",
     "quantities",
+    "readings",
+    "rig",
     "sweep",
     "tracking_parameters",
     "volume_figures",

@@ -30,11 +30,10 @@ from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._errors import SweepError
+from ._space import SweepSpace, sweep_of_text
 
 if TYPE_CHECKING:
     from distributed import Client
-
-    from ._sweep import SweepSpace
 
 #: Seconds of work that a worker is given at a time: far above what handing it out costs (some milliseconds).
 CHUNK_S = 0.5
@@ -84,11 +83,9 @@ _KNOWN: dict[tuple[str, str], _native.Sweep] = {}
 
 
 def _sweep(text: str, path: str) -> _native.Sweep:
-    from ._sweep import made
-
     known = _KNOWN.get((text, path))
     if known is None:
-        known = _KNOWN[(text, path)] = made(text, path)
+        known = _KNOWN[(text, path)] = sweep_of_text(text, path)
     return known
 
 

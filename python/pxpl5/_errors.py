@@ -1,43 +1,47 @@
-"""What can go wrong, as exceptions with the words of the library: what, where, expected, found."""
+"""Exceptions of the package, with the messages of the library: what, where, expected, found."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from . import _native
     from ._outcome import Outcome
 
 
 class Pxpl5Error(Exception):
-    """The base of everything that this package raises by itself."""
+    """Base class of all exceptions that this package raises by itself."""
 
 
 class SettingError(Pxpl5Error, ValueError):
-    """A setting, name, file or array that no experiment can have; the text names it, what was expected and what was found."""
+    """A wrong setting, name, file or array. The message names it, with the expected and the found value."""
+
+
+class UnknownNameError(SettingError, AttributeError):
+    """An attribute that an object does not have. The message has the nearest name."""
 
 
 class AssemblyError(Pxpl5Error, ValueError):
-    """Source text of which no i860 program can be made; the text has a line for each that is wrong."""
+    """Source text that cannot be assembled to an i860 program. The message has a line for each error."""
 
 
 class SweepError(Pxpl5Error, OSError):
     """A folder of a sweep that cannot be used, is in use, or holds another sweep."""
 
 
+class DiscardedError(Pxpl5Error, RuntimeError):
+    """A table or drawing that needs records which the run has discarded, because it kept only statistics."""
+
+
 class RunError(Pxpl5Error, RuntimeError):
     """A run that ended early, or a processor that trapped."""
 
-    _native: Any = None
-    #: Fields after which a picture behind the warm-up would have been shown, as far as a closed form can tell; else None.
+    _native: _native.Outcome | None = None
+    #: Number of fields after which a picture behind the warm-up would have been shown, by a closed form; None if unknown.
     fields_needed: int | None = None
-
-    @property
-    def partial(self) -> Outcome | None:
-        """Everything that was observed until then; None where nothing was."""
-        from ._outcome import Outcome
-
-        return None if self._native is None else Outcome(self._native)
+    #: All observations until the error; None if there are none.
+    partial: Outcome | None = None
 
 
 class TooShortError(RunError):
-    """A run in which nothing but pictures of the warm-up was shown; :attr:`fields_needed` says how long it must be."""
+    """A run in which only pictures of the warm-up were shown; :attr:`fields_needed` is the necessary length."""

@@ -2,42 +2,28 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from . import _native
+from . import _html, _native, _pickle
+from ._checks import Strict, choice, names, optional, whole
+from ._errors import RunError, SettingError
 from ._head import Head
 from ._machine import Machine, Parameter, parameter_table
+from ._names import LevelName, MachineName, PipelineName, PixelsName, QuantityName
 from ._native import Motion, Scene, Table
 from ._outcome import Outcome
 from ._progress import Progress, reporting
+from ._stepper import Stepper
+from ._tables import table_of
+from ._toml import toml_of
+from ._types import PolicyFrame
 
-#: A frame as a policy sees it, and what it answers: (region, renderer) for every region, in the order of sending.
-Policy = Callable[[dict[str, Any]], Sequence[tuple[int, int]]]
-
-
-def toml_of(value: object) -> str:
-    """A value as experiment files write it."""
-    if isinstance(value, bool) or isinstance(value, int):
-        return json.dumps(value)
-    if isinstance(value, float):
-        return repr(value)
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, PathLike):
-        return json.dumps(fspath(value), ensure_ascii=False)
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{json.dumps(str(key))} = {toml_of(entry)}" for key, entry in value.items()) + " }"
-    if hasattr(value, "tolist"):
-        return toml_of(value.tolist())
-    if isinstance(value, Sequence):
-        return "[" + ", ".join(toml_of(entry) for entry in value) + "]"
-    if hasattr(value, "item"):
-        return toml_of(value.item())
-    raise TypeError(f"expected text, a number, a truth value or a list of these, found {type(value).__name__}")
+#: A function that gets a frame and returns (region, renderer) for every region, in the order of sending.
+Policy = Callable[[PolicyFrame], Sequence[tuple[int, int]]]
 
 
 class Made:
@@ -64,18 +50,9 @@ class Made:
     ) -> None:
         """Sets what keywords say; a key whose value is None is not set."""
         self._put_pipeline(pipeline)
-        if isinstance(scene, Scene):
-            self.scene = scene
-            self.put("scene", "full-screen:1")
-        elif scene is not None:
-            self.put("scene", fspath(scene))
+        self._put_scene(scene)
         self._put_machine(machine)
-        if isinstance(head, str):
-            self.put("head.motion", head)
-        elif head is not None:
-            self.motion = head.moving()
-            for path, value in head.settings().items():
-                self.put(path, value)
+        self._put_head(head)
         for path, value in keys.items():
             if value is not None:
                 self.put(path.replace("__", "."), value)
@@ -86,28 +63,49 @@ class Made:
             self.policy = pipeline.policy
             self.phong = pipeline.shading == "phong"
             self.put("pipeline", "rendering-control")
-        elif pipeline is not None:
+        elif isinstance(pipeline, str):
             self.put("pipeline", pipeline)
+        elif pipeline is not None:
+            raise SettingError(f"pipeline: expected a name or a PolicyPipeline, found {pipeline!r}")
+
+    def _put_scene(self, scene: str | PathLike[str] | Scene | None) -> None:
+        if isinstance(scene, Scene):
+            self.scene = scene
+            self.put("scene", "full-screen:1")
+        elif isinstance(scene, (str, PathLike)):
+            self.put("scene", fspath(scene))
+        elif scene is not None:
+            raise SettingError(f"scene: expected a name, a path or a Scene, found {scene!r}")
+
+    def _put_head(self, head: str | Head | None) -> None:
+        if isinstance(head, str):
+            self.put("head.motion", head)
+        elif isinstance(head, Head):
+            self.motion = head.moving()
+            for path, value in head.settings().items():
+                self.put(path, value)
+        elif head is not None:
+            raise SettingError(f"head: expected the name of a motion or a Head, found {head!r}")
 
     def _put_machine(self, machine: str | Machine | None) -> None:
         if isinstance(machine, Machine):
             self.put("machine.preset", machine.preset)
             for path, value in machine.changes.items():
                 self.put(f"machine.{path}", value)
-        elif machine is not None:
+        elif isinstance(machine, str):
             self.put("machine.preset", machine)
+        elif machine is not None:
+            raise SettingError(f"machine: expected the name of a preset or a Machine, found {machine!r}")
 
     def check_scene(self, keys: Mapping[str, object]) -> None:
         """A scene that was given as such is drawn as it is."""
         given = [key for key in ("triangles", "cull", "fit") if keys.get(key) is not None]
         if self.scene is not None and given:
-            from ._errors import SettingError
-
             methods = "Scene.decimated, Scene.culled or the scene's own fit"
             raise SettingError(f"keyword {given[0]}: expected the name of a scene beside it, found a Scene; use {methods}")
 
 
-class PolicyPipeline:
+class PolicyPipeline(Strict):
     """A pipeline of one's own: one graphics processor draws mono frames, and a callable says which renderer draws what.
 
     ``policy(frame)`` is asked when TRANSFORM is done. ``frame`` is a dictionary: ``frame`` (its number), ``time_s`` (simulated
@@ -118,19 +116,17 @@ class PolicyPipeline:
     whether it is stuck, or when views are seen.
     """
 
-    def __init__(self, policy: Policy, *, shading: str = "phong") -> None:
-        if shading not in ("phong", "gouraud"):
-            from ._errors import SettingError
+    _fields = ("policy", "shading")
 
-            raise SettingError(f"shading: expected phong or gouraud, found {shading}")
+    def __init__(self, policy: Policy, *, shading: str = "phong") -> None:
         self.policy = policy
-        self.shading = shading
+        self.shading = choice("shading", shading, ("phong", "gouraud"))
 
     def __repr__(self) -> str:
         return f"<pxpl5.PolicyPipeline {getattr(self.policy, '__qualname__', 'callable')}, {self.shading}>"
 
 
-class Experiment:
+class Experiment(Strict):
     """A pipeline on a machine with a scene.
 
     - ``pipeline``: a name of :func:`pipelines`, or a :class:`PolicyPipeline`.
@@ -148,22 +144,22 @@ class Experiment:
 
     def __init__(
         self,
-        pipeline: str | PolicyPipeline | None = None,
+        pipeline: PipelineName | str | PolicyPipeline | None = None,
         scene: str | PathLike[str] | Scene | None = None,
         *,
-        machine: str | Machine | None = None,
+        machine: MachineName | str | Machine | None = None,
         head: str | Head | None = None,
         fields: int | None = None,
         seed: int | None = None,
-        level: str | None = None,
-        pixels: str | None = None,
+        level: LevelName | str | None = None,
+        pixels: PixelsName | str | None = None,
         triangles: int | None = None,
-        measure: Sequence[str] | None = None,
+        measure: QuantityName | Sequence[QuantityName | str] | None = None,
         settings: Mapping[str, object] | None = None,
         **keys: object,
     ) -> None:
         given: dict[str, object] = {"fields": fields, "seed": seed, "level": level, "pixels": pixels, "triangles": triangles}
-        given |= {"measure": None if measure is None else list(measure), **keys, **(settings or {})}
+        given |= {"measure": None if measure is None else names("measure", measure), **keys, **(settings or {})}
         made = Made()
         made.put_all(pipeline, scene, machine, head, given)
         made.check_scene(given)
@@ -201,23 +197,122 @@ class Experiment:
             made.settings, scene=made.scene, motion=made.motion, policy=made.policy, phong=made.phong
         )
 
-    def run(self, *, progress: Progress = None, threads: int | None = None, keep: str = "everything") -> Outcome:
+    def run(
+        self,
+        *,
+        progress: Progress = None,
+        threads: int | None = None,
+        keep: str = "everything",
+        each_field: Callable[[Stepper], object] | None = None,
+    ) -> Outcome:
         """Runs it, without the interpreter's lock; Ctrl-C ends it within a fraction of a second.
 
         - ``progress``: True for a bar of tqdm, False for none, or a callable (fields done, of all); default: a bar in notebooks and
           terminals.
         - ``threads``: workers for ``pixels="all"``; default: one a core. No result depends on them.
-        - ``keep``: ``everything``, or ``statistics`` for runs of any length, without tables, timelines and errors in pixels.
+        - ``keep``: ``everything``, or ``statistics`` for runs of any length, without tables and timelines.
+        - ``each_field``: a callable that gets the :class:`Stepper` of the run after each field, for pictures and states of boards.
+          The outcome is the same as without it.
 
-        Raises :class:`TooShortError` when nothing but the warm-up was shown, :class:`RunError` when the machine cannot go on; both have
-        everything until then in ``partial``.
+        Gives a RuntimeWarning with advice when the machine was too slow for the scene. Raises :class:`TooShortError` when nothing but
+        the warm-up was shown, and :class:`RunError` when the machine cannot go on; both have all observations until then in
+        ``partial``.
         """
-        if keep not in ("everything", "statistics"):
-            from ._errors import SettingError
-
-            raise SettingError(f"keep: expected everything or statistics, found {keep}")
+        choice("keep", keep, ("everything", "statistics"))
+        number = optional("threads", threads)
         with reporting(progress, "fields") as told:
-            return Outcome(self._native.run(told, threads, keep == "everything"))
+            if each_field is None:
+                outcome = self._finished(lambda: self._native.run(told, number, keep == "everything"))
+            else:
+                outcome = self._run_by_fields(keep, told, each_field)
+        advice = outcome.advice
+        if advice is not None:
+            warnings.warn(advice, RuntimeWarning, stacklevel=2)
+        return outcome
+
+    def _run_by_fields(
+        self, keep: str, told: Callable[[int, int], object] | None, each_field: Callable[[Stepper], object]
+    ) -> Outcome:
+        stepper = Stepper(self._native.stepper(keep == "everything"), self)
+        for done in range(1, self.fields + 1):
+            if stepper.run_to_field(done) not in ("reached", "end"):
+                break
+            each_field(stepper)
+            if told is not None:
+                told(done, self.fields)
+        return stepper.finish()
+
+    def _finished(self, run: Callable[[], _native.Outcome]) -> Outcome:
+        """Returns the outcome of a run; an error gets the observations until then."""
+        try:
+            return Outcome(run(), self)
+        except RunError as error:
+            error.partial = None if error._native is None else Outcome(error._native, self)
+            raise
+
+    def stepper(self, *, keep: str = "everything") -> Stepper:
+        """Begins a run that advances on request, by fields, lines or events, and whose state can be read.
+
+        ``keep`` is as in :meth:`run`. Raises :class:`SettingError` if the machine cannot be built.
+        """
+        choice("keep", keep, ("everything", "statistics"))
+        return Stepper(self._native.stepper(keep == "everything"), self)
+
+    def frames(
+        self, surface: str | int = "left", *, first: int = 0, fields: int | None = None
+    ) -> Iterator[_native.Picture]:
+        """Pictures of a run, one for each field from ``first`` on: the screen at the end of the field.
+
+        ``surface`` is ``left``, ``right``, ``both`` side by side, or the number of a surface. ``fields`` is how many; default: all up
+        to the last complete field of the run. The experiment is run once for this, with pixels, while the pictures are taken.
+
+        Raises :class:`SettingError` for a surface that the display does not have.
+        """
+        count = self._frame_count(first, fields)
+        return iter(self._native.frames(_surface(surface), first, count))
+
+    def film(
+        self, path: str | PathLike[str], surface: str | int = "left", *, first: int = 0, fields: int | None = None
+    ) -> None:
+        """Writes the pictures of :meth:`frames` as an animated PNG at the true rate, which browsers play.
+
+        Raises as :meth:`frames`, and OSError when the file cannot be written.
+        """
+        count = self._frame_count(first, fields)
+        Path(path).write_bytes(self._native.film(_surface(surface), first, count))
+
+    def _frame_count(self, first: int, fields: int | None) -> int:
+        start = whole("first", first)
+        if fields is not None:
+            return whole("fields", fields, 1)
+        if start >= self.fields - 1:
+            raise SettingError(f"first: expected 0 to {self.fields - 2}, found {start}")
+        return self.fields - 1 - start
+
+    def what_if(self) -> Table:
+        """What 10 % more of each resource of the machine would bring: a row for each, with latency and rate before and after.
+
+        Raises as :meth:`run`.
+        """
+        rows = self._native.what_if()
+        flat: list[dict[str, object]] = []
+        for row in rows:
+            before_ms, after_ms = row["latency_ms"]
+            before_hz, after_hz = row["updates_hz"]
+            flat.append(
+                {
+                    "resource": row["resource"],
+                    "key": row["key"],
+                    "from": row["from"],
+                    "to": row["to"],
+                    "latency_ms.before": before_ms,
+                    "latency_ms.after": after_ms,
+                    "updates_hz.before": before_hz,
+                    "updates_hz.after": after_hz,
+                    "level": row["level"],
+                }
+            )
+        return table_of(flat, WHAT_IF_DEFINITIONS)
 
     def measure(self) -> dict[str, float | None]:
         """The quantities in ``measure`` at the experiment's own level, which may be analytic; None where it shows none.
@@ -225,6 +320,11 @@ class Experiment:
         Raises as :meth:`run`.
         """
         return self._native.measure()
+
+    @property
+    def fields(self) -> int:
+        """Number of display periods that a run simulates: for NTSC, fields of 1/60 s."""
+        return self._native.fields
 
     @property
     def config_hash(self) -> str:
@@ -252,5 +352,76 @@ class Experiment:
         """
         return self._made.settings.text()
 
+    def _plain_state(self) -> dict[str, object] | None:
+        """The experiment as plain data; None if a Python function belongs to it."""
+        made = self._made
+        state: dict[str, object] = {"settings": self.settings(), "phong": made.phong}
+        if made.policy is not None:
+            return None
+        if made.motion is not None:
+            restore, arguments = made.motion.__reduce__()
+            if restore is _pickle.callable_motion:
+                return None
+            text = arguments[0]
+            plain = [text.decode("latin-1"), *arguments[1:]] if isinstance(text, bytes) else list(arguments)
+            state["motion"] = plain
+        if made.scene is not None:
+            state["scene"] = made.scene.__reduce__()[1]
+        return state
+
+    @classmethod
+    def _of_plain_state(cls, state: Mapping[str, Any]) -> Experiment:
+        scene = _pickle.scene(*state["scene"]) if "scene" in state else None
+        motion: Motion | None = None
+        if "motion" in state:
+            first, *others = state["motion"]
+            motion = _pickle.recording(first.encode("latin-1"), *others) if others else _pickle.named_motion(first)
+        return _experiment_of(state["settings"], scene, motion, None, state["phong"])
+
+    def __reduce__(self) -> tuple[Callable[..., Experiment], tuple[object, ...]]:
+        made = self._made
+        return _experiment_of, (self.settings(), made.scene, made.motion, made.policy, made.phong)
+
     def __repr__(self) -> str:
         return f"<pxpl5.Experiment {self.config_hash}>"
+
+    def _repr_html_(self) -> str:
+        lines = [line for line in self.settings().splitlines() if line and not line.startswith("#")]
+        shown = _html.lines(lines, f"Experiment {self.config_hash}")
+        return shown + "".join(_html.warning(text) for text in self.warnings)
+
+
+def _experiment_of(
+    text: str, scene: Scene | None, motion: Motion | None, policy: Policy | None, phong: bool
+) -> Experiment:
+    """Returns the experiment with these settings and objects, for the module pickle."""
+    made = Made()
+    made.settings.parse(text, "pickle")
+    made.scene, made.motion, made.policy, made.phong = scene, motion, policy, phong
+    experiment = Experiment.__new__(Experiment)
+    experiment._take(made)
+    return experiment
+
+
+def _surface(surface: str | int) -> int | None:
+    """Returns the number of a surface; None stands for all."""
+    if isinstance(surface, str):
+        choice("surface", surface, ("left", "right", "both"))
+        return {"left": 0, "right": 1, "both": None}[surface]
+    return whole("surface", surface)
+
+
+WHAT_IF_DEFINITIONS = {
+    "resource": "what the machine gets more of",
+    "key": "the setting that is changed",
+    "from": "value of the setting",
+    "to": "value that was tried: 10 % better, and at least one step",
+    "latency_ms.before": "mean latency without the change, milliseconds",
+    "latency_ms.after": "mean latency with the change, milliseconds",
+    "updates_hz.before": "new complete pictures a second without the change",
+    "updates_hz.after": "new complete pictures a second with the change",
+    "level": "level of modelling of the results",
+}
+
+# An outcome that is loaded needs its experiment, whose module imports that of outcomes.
+Outcome._experiment_of_state = Experiment._of_plain_state

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
 from . import _native
+from ._checks import Strict, names, optional, whole
+from ._drawing import Drawing, plotted
+from ._errors import SettingError
 from ._experiment import Made
 from ._head import Head
 from ._machine import Machine, Parameter
+from ._names import LevelName, MachineName, PipelineName, QuantityName
 from ._native import Table
 from ._progress import Progress, reporting
 from ._tables import table_of
+from ._types import RigData
 
 
 def presets() -> dict[str, str]:
@@ -36,7 +42,7 @@ def displays() -> list[str]:
     return _native.displays()
 
 
-def quantities() -> dict[str, str]:
+def quantities() -> dict[QuantityName, str]:
     """Names of what can be measured, each with its definition."""
     return _native.quantities()
 
@@ -68,7 +74,7 @@ def figure_ids() -> dict[str, str]:
 
 
 def figures(
-    ids: Sequence[str] | None = None, *, level: str = "transaction", progress: Progress = None
+    ids: str | Sequence[str] | None = None, *, level: LevelName | str = "transaction", progress: Progress = None
 ) -> Table:
     """The papers' figures, measured: a row for each with published and simulated value, unit, error and source.
 
@@ -81,10 +87,11 @@ def figures(
             rows = _native.figures(level, told)
         else:
             rows = []
-            for done, number in enumerate(ids, 1):
+            wanted = names("ids", ids)
+            for done, number in enumerate(wanted, 1):
                 rows.append(_native.figure(number, level))
                 if told is not None:
-                    told(done, len(ids))
+                    told(done, len(wanted))
     return table_of(rows, FIGURE_DEFINITIONS)
 
 
@@ -110,15 +117,99 @@ class Limit:
     scene: str
 
 
-def limit(
-    pipeline: str,
-    scene: str | PathLike[str] | None = None,
+@dataclass(frozen=True)
+class OverLimit:
+    """Values of a setting with which an experiment reaches a goal."""
+
+    #: Path of the setting.
+    over: str
+    #: What had to hold.
+    goal: str | dict[str, float]
+    #: Fields that each value was simulated for.
+    fields: int
+    #: Least value of the search.
+    low: float
+    #: Greatest value of the search.
+    high: float
+    #: Least value that reaches the goal; None if no smaller tried value misses it.
+    least: float | None
+    #: Greatest value that reaches the goal; None if no greater tried value misses it.
+    most: float | None
+    #: True if at least one tried value reaches the goal.
+    reached: bool
+    #: Tried values in ascending order, each with True if it reaches the goal.
+    tried: list[tuple[float, bool]]
+    #: A value that misses the goal: next to the limit, or the best if all miss; None if all reach it.
+    missed_at: float | None
+    #: What limits the experiment with ``missed_at``, in words; None if that is unknown.
+    because: str | None
+
+
+def limit_over(
+    over: str,
+    pipeline: PipelineName | str,
+    scene: str | PathLike[str],
     *,
-    machine: str | Machine | None = None,
+    low: float | None = None,
+    high: float | None = None,
+    machine: MachineName | str | Machine | None = None,
+    head: str | Head | None = None,
     rate_hz: float | None = None,
     latency_fields: float | None = None,
     fields: int | None = None,
-    level: str | None = None,
+    level: LevelName | str | None = None,
+    settings: Mapping[str, object] | None = None,
+    progress: Progress = None,
+    **keys: object,
+) -> OverLimit:
+    """The values of a numeric setting with which an experiment reaches a goal, as ``pxpl5 limit --over``.
+
+    - ``over``: path of the setting, such as ``machine.n_gps``; ``low`` and ``high``: the range that is searched; default: for numbers
+      of boards 1 to the number in the largest preset, else the range that the sources allow.
+    - ``rate_hz`` (least updates a second) or ``latency_fields`` (greatest mean latency) replace the pipeline's own goal.
+
+    The search tries the ends of the range and three values between, and bisects from one that reaches the goal. Raises
+    :class:`SettingError` for a setting or a range that is wrong.
+    """
+    made = Made()
+    made.put_all(pipeline, scene, machine, head, {"level": level, **keys, **(settings or {})})
+    if made.motion is not None:
+        raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
+    _positive("rate_hz", rate_hz)
+    _positive("latency_fields", latency_fields)
+    with reporting(progress, "values") as told:
+        found = _native.limit_over(
+            made.settings,
+            over,
+            low=low,
+            high=high,
+            rate_hz=rate_hz,
+            latency_fields=latency_fields,
+            fields=optional("fields", fields, LEAST_FIELDS),
+            progress=told,
+        )
+    tried = [(float(value), bool(hit)) for value, hit in found.pop("tried")]
+    return OverLimit(tried=tried, **found)
+
+
+#: Least fields of a search: shorter runs end during the warm-up of every pipeline.
+LEAST_FIELDS = 10
+
+
+def _positive(name: str, value: float | None) -> None:
+    if value is not None and not value > 0:
+        raise SettingError(f"{name}: expected a number above 0, found {value!r}")
+
+
+def limit(
+    pipeline: PipelineName | str,
+    scene: str | PathLike[str] | None = None,
+    *,
+    machine: MachineName | str | Machine | None = None,
+    rate_hz: float | None = None,
+    latency_fields: float | None = None,
+    fields: int | None = None,
+    level: LevelName | str | None = None,
     settings: Mapping[str, object] | None = None,
     **keys: object,
 ) -> Limit:
@@ -130,6 +221,8 @@ def limit(
 
     Raises :class:`SettingError` for a setting that is wrong.
     """
+    _positive("rate_hz", rate_hz)
+    _positive("latency_fields", latency_fields)
     made = Made()
     test_scene = scene if scene in ("full-screen", "typical") else None
     model = None if test_scene is not None else scene
@@ -140,13 +233,15 @@ def limit(
         thinned=model is not None,
         rate_hz=rate_hz,
         latency_fields=latency_fields,
-        fields=fields,
+        fields=optional("fields", fields, LEAST_FIELDS),
     )
     return Limit(**found)
 
 
-class Comparison:
+class Comparison(Strict):
     """Every way to fight latency side by side: :attr:`table` has a row for each, :attr:`data` everything."""
+
+    _fields = ("data",)
 
     def __init__(self, data: dict[str, Any]) -> None:
         #: The object of ``pxpl5 compare --json``.
@@ -165,6 +260,22 @@ class Comparison:
             if isinstance(row.get("error"), dict):
                 row["error"] = {key: value for key, value in row["error"].items() if key != "distribution_px"}
         return table_of(rows)
+
+    def plot(
+        self,
+        x: str = "head_to_light_ms.mean",
+        y: str = "error.mean_px.mean",
+        *,
+        by: str | Sequence[str] = "pipeline",
+        where: Mapping[str, object] | None = None,
+        x_scale: str = "even",
+        y_scale: str = "even",
+        title: str = "",
+        width_mm: float = 120.0,
+    ) -> Drawing:
+        """Draws column ``y`` over column ``x`` as ``pxpl5 plot`` does; see :meth:`SweepResults.plot`."""
+        options = {"by": by, "where": where, "x_scale": x_scale, "y_scale": y_scale, "title": title}
+        return plotted("comparison.json", json.dumps(self.data), x, y, width_mm, options)
 
     def __repr__(self) -> str:
         return f"<pxpl5.Comparison of {len(self.data['pipelines'])} pipelines, {self.data['scene']} on {self.data['machine']}>"
@@ -193,10 +304,10 @@ class Comparison:
 def compare(
     scene: str | PathLike[str] = "room",
     *,
-    machine: str | Machine = "small-hmd",
+    machine: MachineName | str | Machine = "small-hmd",
     head: str | Head = "synthetic",
     fields: int | None = None,
-    only: Sequence[str] = (),
+    only: str | Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
     settings: Mapping[str, object] | None = None,
@@ -212,11 +323,95 @@ def compare(
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
     if made.motion is not None:
-        from ._errors import SettingError
-
         raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
     if not made.settings.has("head.tracker"):
         made.put("head.tracker", "optical")
-    numbers = list(range(1, seeds + 1)) if isinstance(seeds, int) else list(seeds)
+    if isinstance(seeds, int):
+        numbers = list(range(1, whole("seeds", seeds, 1) + 1))
+    else:
+        numbers = [whole("seeds", seed) for seed in seeds]
     with reporting(progress, "runs") as told:
-        return Comparison(_native.compare(made.settings, list(only), numbers, limits, told))
+        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, told))
+
+
+def rig(
+    pipeline: PipelineName | str = "rendering-control",
+    *,
+    machine: MachineName | str | Machine | None = None,
+    tracker: str = "optical",
+    passes: int = 24,
+    line: int | None = None,
+    seed: int | None = None,
+    settings: Mapping[str, object] | None = None,
+    **keys: object,
+) -> RigData:
+    """Latency measured from outside with a pendulum and photodiodes, beside the pipeline's own time stamps, as ``pxpl5 rig``.
+
+    - ``passes``: low points of the pendulum that are measured, 2 to 10,000; ``line``: the line of a field with the photodiode.
+
+    The rig has its own scene, motion and length. Raises :class:`SettingError` for a wrong setting, and for a pipeline whose light does
+    not identify a frame.
+    """
+    given: dict[str, object] = {**keys, **(settings or {})}
+    for key in given:
+        if key in KEYS_SET_BY_RIG or key.startswith(("motion", "head")):
+            raise SettingError(f"{key}: expected no such setting, because the rig has its own scene, motion and length")
+    if whole("passes", passes, 2) > MOST_PASSES:
+        raise SettingError(f"passes: expected 2 to {MOST_PASSES}, found {passes}")
+    made = Made()
+    made.put_all(pipeline, "full-screen:2", machine, Head("pendulum", tracker=tracker), {"seed": seed, **given})
+    found: RigData = _native.rig(made.settings, passes, optional("line", line))
+    return found
+
+
+#: Settings that the rig determines itself.
+KEYS_SET_BY_RIG = ("scene", "triangles", "fields", "pixels")
+
+#: Most passes of the pendulum in a measurement.
+MOST_PASSES = 10_000
+
+LEVEL_DEFINITIONS = {
+    "times_of_code": "true if the times of primitives come from executed code instead of published or fitted values",
+    "published_error_percent": "mean absolute error over the published figures to which nothing was fitted, percent",
+    "from_cycle_percent.median": "median of the absolute deviations from the cycle level over random experiments, percent",
+    "from_cycle_percent.low_5": "5th percentile of these deviations",
+    "from_cycle_percent.high_95": "95th percentile of these deviations",
+    "speeds": "simulated seconds a second of the host, by choice of pixels, as JSON",
+}
+
+
+def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table:
+    """The levels of modelling beside each other: a row for each, with its errors and its speed.
+
+    By default the measurement that is recorded in the repository. With ``experiments`` the errors are measured now, over so many random
+    experiments; with ``speeds`` the speeds too, which needs an idle computer. Raises :class:`RunError` if an experiment fails.
+    """
+    with reporting(progress, "steps") as told:
+        found = _native.levels(optional("experiments", experiments, 1), speeds, told)
+    return table_of(found["levels"], LEVEL_DEFINITIONS)
+
+
+READING_DEFINITIONS = {
+    "evaluated_at": "level of modelling of the row",
+    "words": "the answers to the papers' open questions",
+    "mean_error_percent": "mean of the figures' absolute errors, percent",
+    "greatest_error_percent": "largest absolute error of a figure, percent",
+    "log_likelihood": "logarithm of the likelihood of the printed means and deviations, up to a constant",
+    "unexplained": "numbers of the figures that the interpretation does not explain, as JSON",
+}
+
+
+def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table:
+    """Interpretations of the papers' open questions, ranked by how well they explain the figures of Rendering Control.
+
+    A row for each interpretation at the analytic level, then the ``best`` of them at the transaction level. ``seeds`` and ``frames``
+    are the size of the fly-throughs. It takes minutes. Raises :class:`RunError` if a figure cannot be simulated.
+    """
+    with reporting(progress, "runs") as told:
+        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), told)
+    rows = [
+        {"evaluated_at": level, **{key: fit[key] for key in READING_DEFINITIONS if key != "evaluated_at"}}
+        for level in ("analytic", "transaction")
+        for fit in found[level]
+    ]
+    return table_of(rows, READING_DEFINITIONS)

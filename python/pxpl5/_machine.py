@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
+from difflib import get_close_matches
 
 from . import _html, _native
+from ._checks import Strict
+from ._names import MachineName
 from ._native import Table
 from ._tables import table_of
 
@@ -60,7 +63,7 @@ def parameter_table(parameters: list[Parameter]) -> Table:
     return table_of(rows, PARAMETER_DEFINITIONS)
 
 
-class Machine(Mapping[str, Parameter]):
+class Machine(Strict, Mapping[str, Parameter]):
     """A machine: a preset, and the numbers of it that are otherwise.
 
     ``machine["gp.triangle_ns"]`` is a :class:`Parameter`; ``machine["gp.triangle_ns"] = 30_000`` changes its value, and
@@ -71,7 +74,7 @@ class Machine(Mapping[str, Parameter]):
     Raises :class:`SettingError` for a preset, path or value that no machine has, with the nearest that there is.
     """
 
-    def __init__(self, preset: str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
+    def __init__(self, preset: MachineName | str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
         self._preset = preset
         self._changes: dict[str, float] = {}
         self._known = _native.machine_parameters(preset, dict(changes or {}))
@@ -132,7 +135,8 @@ class Machine(Mapping[str, Parameter]):
         for parameter in self.parameters:
             if parameter.path == path:
                 return parameter
-        raise KeyError(path)
+        nearest = get_close_matches(path, list(self), 1, 0.0)
+        raise KeyError(f"there is no parameter `{path}`; did you mean `{nearest[0]}`?")
 
     def __iter__(self) -> Iterator[str]:
         return (parameter.path for parameter in self.parameters)

@@ -2,87 +2,140 @@
 
 from __future__ import annotations
 
+import json
+import pickle
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _html, _native
+from . import _html, _native, _saved
+from ._checks import Strict, optional, whole
+from ._drawing import Drawing
+from ._errors import DiscardedError, RunError, SettingError
+from ._names import QuantityName
 from ._native import Picture, Table
+from ._tables import table_of
+from ._types import CriticalPathData, UtilisationData
+
+if TYPE_CHECKING:
+    from ._experiment import Experiment
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """How many numbers there are, their mean, sample standard deviation, least and greatest; NaN where there are too few."""
+    """How many numbers there are, their mean, sample standard deviation, least and greatest; None where there are too few."""
 
     #: How many numbers there are.
     n: int
-    #: Their mean.
-    mean: float
-    #: Sample standard deviation (n - 1).
-    sd: float
-    #: The least.
-    min: float
-    #: The greatest.
-    max: float
+    #: Their mean; None without numbers.
+    mean: float | None
+    #: Sample standard deviation (n - 1); None with fewer than two numbers.
+    sd: float | None
+    #: The least; None without numbers.
+    min: float | None
+    #: The greatest; None without numbers.
+    max: float | None
     #: What they are of, in a sentence.
     definition: str = ""
-
-
-class Drawing:
-    """A drawing as SVG, which notebooks show."""
-
-    def __init__(self, svg: str) -> None:
-        #: The document.
-        self.svg = svg
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Writes it as a file; raises OSError when it cannot be written."""
-        Path(path).write_text(self.svg, encoding="utf-8")
-
-    def _repr_svg_(self) -> str:
-        """For notebooks, which want the element alone."""
-        return self.svg[self.svg.index("<svg") :]
-
-    def __repr__(self) -> str:
-        return f"<pxpl5.Drawing of {len(self.svg)} bytes>"
 
 
 class Report(dict[str, Any]):
     """Everything that a run says, as numbers: the object of ``pxpl5 run --json``, which notebooks show as a table."""
 
     def _repr_html_(self) -> str:
-        rows = [[key, value] for key, value in self.items() if not isinstance(value, (dict, list))]
+        rows: list[list[object]] = []
         for key in ("latency_ms", "latency_fields"):
-            spread = self.get(key)
-            if isinstance(spread, dict):
-                rows.append([key, f"{spread['mean']:.4g} +- {spread['sd']:.3g} (n {spread['n']})"])
+            rows.append([key, _spread(self.get(key))])
+        rows += [[key, value] for key, value in self.items() if not isinstance(value, (dict, list))]
         return _html.table(["quantity", "value"], rows, f"{self.get('pipeline')} on {self.get('machine')}, {self.get('scene')}")
 
 
-class Outcome:
-    """What came of an experiment. It is had from :meth:`Experiment.run`."""
+def _spread(found: object) -> str:
+    """Mean, standard deviation and number of values in words."""
+    if not isinstance(found, dict) or found.get("mean") is None:
+        return "none: no picture was complete in time"
+    sd = found["sd"]
+    return f"{found['mean']:.4g}" + (f" +- {sd:.3g}" if sd is not None else "") + f" (n {found['n']})"
 
-    def __init__(self, native: _native.Outcome) -> None:
-        self._native = native
+
+@dataclass(frozen=True)
+class Differences:
+    """Differences between two outcomes: settings, results and pictures."""
+
+    #: True if both runs have the same trace and the same statistics.
+    same_trace: bool
+    #: A row for each setting that differs: key, a and b.
+    settings: Table
+    #: A row for each result that differs: key, a, b, and percent of a. Host times are left out.
+    results: Table
+    #: Number of results that are equal.
+    equal: int
+    #: A row for each surface with a picture in both: surface, pixels, differing pixels, and largest difference of a colour (0 to 255).
+    pictures: Table
+
+    def __repr__(self) -> str:
+        trace = "the same trace" if self.same_trace else "another trace"
+        return f"<pxpl5.Differences: {trace}, {len(self.settings)} settings and {len(self.results)} results differ, {self.equal} are equal>"
+
+    def _repr_html_(self) -> str:
+        return "".join(part._repr_html_() for part in (self.settings, self.results, self.pictures))
+
+
+class Outcome(Strict):
+    """Results of an experiment, from :meth:`Experiment.run` or :meth:`load`.
+
+    An outcome can be pickled and saved. It then has the report, the quantities, the tables and the last pictures. Everything else is
+    computed on demand by running the experiment again, which gives the same trace.
+    """
+
+    #: Returns the experiment of a saved state; the module of experiments sets it.
+    _experiment_of_state: ClassVar[Callable[[dict[str, Any]], Experiment]]
+
+    def __init__(
+        self,
+        native: _native.Outcome | None,
+        experiment: Experiment | None = None,
+        saved: _saved.Saved | None = None,
+    ) -> None:
+        self._run = native
+        self._experiment = experiment
+        self._saved = saved
+
+    @property
+    def _live(self) -> _native.Outcome:
+        """The run itself; of an outcome that was saved, a new run with the same trace."""
+        if self._run is None:
+            if self._experiment is None or self._saved is None:
+                raise RunError("expected an outcome with its experiment, found one whose experiment could not be saved")
+            run = self._experiment._native.run(None, None, not self._saved["discarded"])
+            if run.trace_hash != self._saved["trace_hash"]:
+                raise RunError(f"the new run: expected the trace {self._saved['trace_hash']}, found {run.trace_hash}")
+            self._run = run
+        return self._run
+
+    def _value(self, saved: Callable[[_saved.Saved], T], native: Callable[[_native.Outcome], T]) -> T:
+        return native(self._live) if self._saved is None else saved(self._saved)
 
     @property
     def trace_hash(self) -> str:
         """Hash of everything that happened: the same experiment has the same one in the command and in Rust."""
-        return self._native.trace_hash
+        return self._value(lambda saved: saved["trace_hash"], lambda native: native.trace_hash)
 
     @property
     def config_hash(self) -> str:
         """Name of everything on which the trace depends."""
-        return self._native.config_hash
+        return self._value(lambda saved: saved["config_hash"], lambda native: native.config_hash)
 
     @property
     def report(self) -> Report:
-        """Everything as numbers, with definitions: the object of ``pxpl5 run --json``."""
-        return Report(self._native.report())
+        """Everything as numbers, with definitions: the object of ``pxpl5 run --json``. What was not measured is None."""
+        return Report(self._value(lambda saved: json.loads(saved["report"]), lambda native: native.report()))
 
     @property
     def latency_ms(self) -> Statistics:
@@ -100,53 +153,123 @@ class Outcome:
         missed = self.report["missed_retraces"]
         return None if missed is None else int(missed)
 
-    def quantity(self, name: str) -> float | None:
+    @property
+    def advice(self) -> str | None:
+        """Advice of the library where the machine was too slow for the scene, or showed nothing; None otherwise."""
+        return self._value(lambda saved: saved["advice"], lambda native: native.advice())
+
+    @property
+    def utilisation(self) -> UtilisationData | None:
+        """Shares of time, 0 to 1, in which boards were busy: host, gps, renderers, ring and ports."""
+        found: UtilisationData | None = self.report["utilisation"]
+        return found
+
+    @property
+    def critical_path(self) -> CriticalPathData | None:
+        """Chain of waits that makes up the latency of the last complete pictures; None if no picture was complete."""
+        found: CriticalPathData | None = self.report["critical_path"]
+        return found
+
+    @property
+    def boards(self) -> Table:
+        """A row for each kind of board and activity: share of time in the mean, of the busiest board, and its number."""
+        return table_of(_board_rows(self.utilisation), BOARD_DEFINITIONS)
+
+    def quantity(self, name: QuantityName | str) -> float | None:
         """A quantity of :func:`quantities` by its name; None where the run shows none.
 
         Raises :class:`SettingError` with the nearest name.
         """
-        return self._native.quantity(name)
+        if self._saved is not None and name in self._saved["quantities"]:
+            return self._saved["quantities"][name]
+        return self._live.quantity(name)
 
     def quantities(self) -> dict[str, float | None]:
         """All quantities by name, in the unit that the name ends with; None where the run shows none."""
-        return self._native.quantities()
+        return self._value(lambda saved: dict(saved["quantities"]), lambda native: native.quantities())
 
     @property
     def measured(self) -> dict[str, float | None]:
         """The quantities that the experiment named in ``measure``."""
-        return self._native.measured()
+        return self._value(lambda saved: dict(saved["measured"]), lambda native: native.measured())
+
+    @property
+    def has_discarded_records(self) -> bool:
+        """True if the run kept only statistics and has discarded records: there are no tables and timelines then."""
+        return self._value(lambda saved: saved["discarded"], lambda native: native.has_discarded_records())
+
+    def _check_records(self, what: str) -> None:
+        if self.has_discarded_records:
+            raise DiscardedError(f"{what}: expected a run with keep=\"everything\", found one that has discarded its records")
 
     @property
     def pictures(self) -> Table:
         """A row for each picture that was begun: when it was sampled, transformed, copied and shown, and where its latency went.
 
-        Times are whole picoseconds of simulated time.
+        Times are whole picoseconds of simulated time. Raises :class:`DiscardedError` where a run with ``keep="statistics"`` has
+        discarded rows.
         """
-        return self._native.pictures()
+        self._check_records("pictures")
+        saved = None if self._saved is None else self._saved["pictures"]
+        return self._live.pictures() if saved is None else saved
 
     @property
     def stages(self) -> Table:
-        """A row for each stage of each picture: picture, stage, surface, begin_ps and end_ps."""
-        return self._native.stages()
+        """A row for each stage of each picture: picture, stage, surface, begin_ps and end_ps.
+
+        Raises :class:`DiscardedError` as :attr:`pictures`.
+        """
+        self._check_records("stages")
+        saved = None if self._saved is None else self._saved["stages"]
+        return self._live.stages() if saved is None else saved
 
     @property
     def surfaces(self) -> list[str]:
-        """Labels of what somebody looks at, such as left and right."""
-        return self._native.surfaces()
+        """Labels of the surfaces that a viewer sees, such as left and right."""
+        return self._value(lambda saved: list(saved["surfaces"]), lambda native: native.surfaces())
 
     def picture(self, surface: str = "left") -> Picture | None:
         """What the viewer of a surface sees at the end: an NTSC screen is 640 x 480 pixels; None without pixels.
 
         Raises :class:`SettingError` with the surfaces that there are.
         """
-        return self._native.picture(surface)
+        if self._saved is not None and surface in self._saved["last"]:
+            return self._saved["last"][surface]
+        return self._live.picture(surface)
 
     def seen(self, field: int, surface: str = "left") -> Picture | None:
-        """What the viewer of a surface saw at the end of a field; None of one that is no longer remembered.
+        """What the viewer of a surface saw at the end of a field; None of a field whose record is no longer kept.
 
-        Raises :class:`SettingError` with the surfaces that there are.
+        :meth:`frames` has the pictures of all fields. Raises :class:`SettingError` with the surfaces that there are.
         """
-        return self._native.seen(surface, field)
+        return self._live.seen(surface, whole("field", field))
+
+    def frames(self, surface: str | int = "left", *, first: int = 0, fields: int | None = None) -> Iterator[Picture]:
+        """All pictures of the run, one for each field, as :meth:`Experiment.frames`: the experiment is run once more for them."""
+        return self._source().frames(surface, first=first, fields=fields)
+
+    def film(
+        self, path: str | PathLike[str], surface: str | int = "left", *, first: int = 0, fields: int | None = None
+    ) -> None:
+        """Writes the pictures of :meth:`frames` as an animated PNG, as :meth:`Experiment.film`."""
+        self._source().film(path, surface, first=first, fields=fields)
+
+    def _source(self) -> Experiment:
+        if self._experiment is None:
+            raise RunError("expected an outcome with its experiment, found one whose experiment could not be saved")
+        return self._experiment
+
+    @property
+    def experiment(self) -> Experiment | None:
+        """The experiment whose outcome this is; None of a saved outcome whose experiment could not be saved."""
+        return self._experiment
+
+    def face(self, eye: str = "left", memory: int = 0) -> Picture | None:
+        """The six cube faces that a display memory of address recalculation shows to an eye at the end, unfolded into a cross.
+
+        None for a display without such memories. Raises :class:`SettingError` for an eye or a memory that does not exist.
+        """
+        return self._live.face(eye, whole("memory", memory))
 
     def pixel_memory(self, renderer: int = 0) -> NDArray[np.uint8] | None:
         """Pixel memory of a renderer at the end: shape (208, 128, 128) by bit, row and column, 0 or 1; None where nothing was drawn.
@@ -154,17 +277,20 @@ class Outcome:
         :attr:`pixel_memory_fields` says which bits are colour, depth and normals. Raises :class:`SettingError` for a renderer that
         there is not.
         """
-        return self._native.pixel_memory(renderer)
+        return self._live.pixel_memory(whole("renderer", renderer))
 
     @property
     def pixel_memory_fields(self) -> list[tuple[str, int, int]]:
         """How the pipeline divides pixel memory: name, first bit and number of bits of each field, the lowest bit first."""
-        return self._native.pixel_memory_fields()
+        return self._live.pixel_memory_fields()
 
     @property
     def pixel_errors(self) -> dict[str, Any] | None:
         """Where pixels are against where they should be: pixels, degrees, and field by field; None without a tracked head."""
-        return self._native.pixel_errors()
+        found: dict[str, Any] | None = self._value(
+            lambda saved: json.loads(saved["pixel_errors"]), lambda native: native.pixel_errors()
+        )
+        return found
 
     def timeline(
         self,
@@ -176,19 +302,122 @@ class Outcome:
     ) -> Drawing:
         """Which board worked on which picture when, in the manner of the papers; at most 16 fields.
 
-        Drawn are the dependencies of one picture, by default the first after the warm-up.
+        Drawn are the dependencies of one picture, by default the first after the warm-up. Raises :class:`DiscardedError` as
+        :attr:`pictures`.
         """
-        return Drawing(self._native.timeline(picture, first_field, fields, title))
+        self._check_records("timeline")
+        numbers = optional("picture", picture), optional("first_field", first_field), optional("fields", fields, 1)
+        return Drawing(self._live.timeline(*numbers, title))
 
     def page(self, name: str = "run") -> str:
-        """The run as one page of HTML, with pictures and timeline, that asks for nothing from outside."""
-        return self._native.page(name)
+        """The run as one page of HTML, with pictures and timeline, that asks for nothing from outside.
+
+        Raises :class:`DiscardedError` as :attr:`pictures`.
+        """
+        self._check_records("page")
+        return self._live.page(name)
+
+    def diff(self, other: Outcome) -> Differences:
+        """Differences between this outcome (a) and another one (b): settings, results and last pictures, as ``pxpl5 diff``."""
+        if not isinstance(other, Outcome):
+            raise SettingError(f"other: expected an Outcome, found {type(other).__name__}")
+        found = _native.diff(self._report_json(), other._report_json())
+        settings = [{"key": row["key"], "a": _cell(row["a"]), "b": _cell(row["b"])} for row in found["settings"]]
+        results = [
+            {"key": row["key"], "a": _cell(row["a"]), "b": _cell(row["b"]), "percent": row["percent"]} for row in found["results"]
+        ]
+        pictures = [
+            _picture_row(surface, self.picture(surface), other.picture(surface))
+            for surface in self.surfaces
+            if surface in other.surfaces
+        ]
+        shown = [row for row in pictures if row is not None]
+        return Differences(found["same_trace"], table_of(settings), table_of(results), found["equal"], table_of(shown))
+
+    def _report_json(self) -> str:
+        return self._value(lambda saved: saved["report"], lambda native: native.report_json())
+
+    def _data(self) -> _saved.Saved:
+        return _saved.saved_of(self._live) if self._saved is None else self._saved
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes the outcome to a file, a ZIP archive of JSON and PNG, which :meth:`load` reads.
+
+        The file has the experiment too, unless a Python function belongs to it. Raises OSError when it cannot be written.
+        """
+        state = None if self._experiment is None else self._experiment._plain_state()
+        _saved.write(path, self._data(), state)
+
+    @staticmethod
+    def load(path: str | PathLike[str]) -> Outcome:
+        """Reads an outcome that :meth:`save` has written.
+
+        Raises :class:`SettingError` for another file, and OSError when it cannot be read.
+        """
+        saved, state = _saved.read(path)
+        experiment = None if state is None else Outcome._experiment_of_state(state)
+        return Outcome(None, experiment, saved)
+
+    def __reduce__(self) -> tuple[type[Outcome], tuple[None, Experiment | None, _saved.Saved]]:
+        # A function that was defined within another one cannot be pickled. The outcome then goes without its experiment.
+        experiment = self._experiment
+        try:
+            pickle.dumps(experiment)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            experiment = None
+        return Outcome, (None, experiment, self._data())
 
     def __repr__(self) -> str:
-        pipeline, machine, scene = self._native.subject()
-        return f"<pxpl5.Outcome {pipeline} on {machine}, {scene}: {self.trace_hash}>"
+        pipeline, machine, scene = self._value(lambda saved: saved["subject"], lambda native: native.subject())
+        latency = _spread(self.report["latency_ms"])
+        return f"<pxpl5.Outcome {pipeline} on {machine}, {scene}: latency, ms: {latency}; trace {self.trace_hash}>"
 
     def _repr_html_(self) -> str:
-        both = self._native.both()
+        warning = "" if self.advice is None else _html.warning(self.advice)
+        both = self._value(lambda saved: saved["both"], lambda native: native.both())
         shown = _html.picture(both.png(), "what the viewer sees at the end") if both is not None else ""
-        return self.report._repr_html_() + shown
+        return warning + self.report._repr_html_() + shown
+
+
+BOARD_DEFINITIONS = {
+    "board": "kind of board",
+    "activity": "what the time was spent for",
+    "mean": "share of the run's time, 0 to 1, mean over all boards of the kind",
+    "max": "share of the busiest board",
+    "busiest": "number of the busiest board",
+    "idle": "number of boards that were busy for less than 1 % of the time",
+}
+
+
+def _board_rows(found: UtilisationData | None) -> list[dict[str, object]]:
+    if found is None:
+        return []
+    gps, renderers = found["gps"], found["renderers"]
+    rows: list[dict[str, object]] = [
+        {"board": "host", "activity": "busy", "mean": found["host"]},
+        {"board": "graphics processors", "activity": "busy", **gps["busy"]},
+        {"board": "graphics processors", "activity": "work", "mean": gps["work"]},
+        {"board": "graphics processors", "activity": "messages", "mean": gps["messages"]},
+        {"board": "graphics processors", "activity": "tokens", "mean": gps["tokens"]},
+        {"board": "renderers", "activity": "executing", **renderers["executing"]},
+        {"board": "renderers", "activity": "copying", "mean": renderers["copying"]},
+        {"board": "renderers", "activity": "waiting", "mean": renderers["waiting"]},
+        {"board": "ring", "activity": "channels", **found["ring"]["channels"]},
+    ]
+    rows += [{"board": port["port"], "activity": "receiving", "mean": port["busy"]} for port in found["ports"]["each"]]
+    return rows
+
+
+def _cell(value: object) -> str | None:
+    """A value of a report as text, since one column has values of several types."""
+    return value if value is None or isinstance(value, str) else json.dumps(value)
+
+
+def _picture_row(surface: str, a: Picture | None, b: Picture | None) -> dict[str, object] | None:
+    if a is None or b is None:
+        return None
+    row: dict[str, object] = {"surface": surface, "pixels": a.array.shape[0] * a.array.shape[1]}
+    if a.array.shape != b.array.shape:
+        return {**row, "differing": None, "largest": None}
+    distance = np.abs(a.array.astype(np.int16) - b.array.astype(np.int16)).max(axis=2)
+    return {**row, "differing": int(np.count_nonzero(distance)), "largest": int(distance.max())}

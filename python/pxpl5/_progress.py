@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -21,11 +22,14 @@ def _wants_bar(progress: bool | None) -> bool:
 
 def _bar(unit: str) -> Any:
     """A bar of tqdm, in notebooks too; None without tqdm."""
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        return None
-    return tqdm(total=0, unit=f" {unit}", leave=False)
+    # Without ipywidgets tqdm warns in every notebook that it shows a bar of text.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            return None
+        return tqdm(total=0, unit=f" {unit}", leave=False)
 
 
 @contextmanager

@@ -2,137 +2,31 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from os import PathLike, fspath
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from . import _native
+from ._checks import Strict, optional
 from ._cluster import Cluster
-from ._experiment import toml_of
-from ._machine import Machine
+from ._drawing import Drawing, plotted
 from ._native import Table
 from ._progress import Progress, reporting
+from ._space import SweepSpace
 from ._tables import table_of
 
 if TYPE_CHECKING:
     from distributed import Client
 
-@dataclass(frozen=True)
-class Range:
-    """Whole numbers from ``start`` to ``stop``, both included, in steps."""
 
-    #: The first.
-    start: int
-    #: The last, if a step meets it.
-    stop: int
-    #: From one to the next, above 0.
-    step: int = 1
-
-
-class SweepSpace:
-    """A space of settings: what all points share, and the axes along which they differ.
-
-    - ``base``: keys of an experiment with their values, such as ``{"pipeline": "slats", "scene": "mig"}``; a :class:`Machine` under
-      ``machine`` stands for its preset and its changes.
-    - ``grid``: keys with the values that they take, lists or :class:`Range`: all combinations, the
-      last key in the order of the alphabet fastest.
-    - ``together``: keys that change in step, lists of one length.
-    - ``seeds``: so many seeds from 1 on for every point.
-
-    Raises :class:`SettingError` for a space that makes no sense.
-    """
-
-    def __init__(
-        self,
-        base: Mapping[str, object],
-        grid: Mapping[str, Sequence[object] | Range] | None = None,
-        *,
-        together: Mapping[str, Sequence[object] | Range] | None = None,
-        seeds: int | None = None,
-    ) -> None:
-        lines = [f"{_key(path)} = {toml_of(value)}" for path, value in _flat(base)]
-        lines.append("[sweep]")
-        if seeds is not None:
-            lines.append(f"seeds = {toml_of(seeds)}")
-        for name, axes in (("grid", grid), ("together", together)):
-            if axes:
-                lines.append(f"[sweep.{name}]")
-                lines += [f"{_key(path)} = {_axis(values)}" for path, values in axes.items()]
-        self._take("\n".join(lines) + "\n", Path())
-
-    @classmethod
-    def from_file(cls, path: str | PathLike[str]) -> SweepSpace:
-        """The space of an experiment file with a table ``sweep``, as ``pxpl5 sweep FILE`` takes it.
-
-        Raises :class:`SettingError` with the file and the line.
-        """
-        space = cls.__new__(cls)
-        space._take(Path(path).read_text(encoding="utf-8"), Path(path).absolute())
-        return space
-
-    def _take(self, text: str, path: Path) -> None:
-        #: The text of an experiment file that says the same.
-        self.text = text
-        self._path = path
-        self._native = made(text, fspath(path))
-
-    @property
-    def points(self) -> int:
-        """How many points there are."""
-        return self._native.points
-
-    def header(self) -> dict[str, Any]:
-        """What all rows have in common: schema, version, machine, quantities with their definitions, axes.
-
-        Raises :class:`SettingError` when no point is an experiment.
-        """
-        return self._native.header()
-
-    def costs(self, points: Sequence[int]) -> list[float]:
-        """About how many seconds each of some points will take on one core, by the analytic level."""
-        return self._native.costs(list(points))
-
-    def __repr__(self) -> str:
-        return f"<pxpl5.SweepSpace of {self.points} points>"
-
-
-def _flat(base: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    for path, value in base.items():
-        if isinstance(value, Machine):
-            yield "machine.preset", value.preset
-            yield from ((f"machine.{number}", setting) for number, setting in value.changes.items())
-        elif path == "machine" and isinstance(value, str):
-            yield "machine.preset", value
-        else:
-            yield path, value
-
-
-def _key(path: str) -> str:
-    return ".".join(part if part.replace("_", "").isalnum() else f'"{part}"' for part in path.split("."))
-
-
-def _axis(values: Sequence[object] | Range) -> str:
-    if isinstance(values, Range):
-        return f"{{ from = {values.start}, to = {values.stop}, step = {values.step} }}"
-    return toml_of(list(values))
-
-
-def made(text: str, path: str) -> _native.Sweep:
-    """A sweep of its text; names of files in it are relative to the file's folder, if it is one."""
-    settings = _native.Settings()
-    if path in ("", "."):
-        settings.parse(text, "space")
-    else:
-        settings.load(Path(path))
-    return _native.Sweep(settings)
-
-
-class SweepResults:
+class SweepResults(Strict):
     """The rows of a sweep, in the order of its points."""
+
+    _fields = ("lines", "folder", "header")
 
     def __init__(self, lines: list[str], folder: Path | None, header: dict[str, Any]) -> None:
         #: The rows as lines of JSON, the same bytes whoever computed them.
@@ -148,8 +42,6 @@ class SweepResults:
     @property
     def table(self) -> Table:
         """A row for each point: point, status, its settings by path, the quantities by name, trace_hash and error."""
-        import json
-
         rows = []
         for line in self.lines:
             row = json.loads(line)
@@ -157,8 +49,37 @@ class SweepResults:
             rows.append({**kept, "trace_hash": row["trace_hash"], "error": row["error"]})
         return table_of(rows, self.header["measure"])
 
+    def plot(
+        self,
+        x: str,
+        y: str,
+        *,
+        by: str | Sequence[str] = (),
+        band: str | Sequence[str] = "seed",
+        where: Mapping[str, object] | None = None,
+        x_scale: str = "even",
+        y_scale: str = "even",
+        title: str = "",
+        width_mm: float = 120.0,
+    ) -> Drawing:
+        """Draws column ``y`` over column ``x`` as ``pxpl5 plot`` does, with the interval of each mean.
+
+        - ``by``: columns whose values have curves of their own; ``band``: columns over which the mean is taken.
+        - ``where``: values of columns that a row must have to be drawn.
+        - ``x_scale``, ``y_scale``: ``even``, ``zero`` (from 0) or ``log``.
+
+        A row without a number is left out, never drawn as 0. Raises :class:`SettingError` for an unknown column, for a column that
+        varies and is not named, and when no row has a number.
+        """
+        rows = "\n".join([json.dumps(self.header), *self.lines]) + "\n"
+        options = {"by": by, "band": band, "where": where, "x_scale": x_scale, "y_scale": y_scale, "title": title}
+        return plotted("rows.jsonl", rows, x, y, width_mm, options)
+
     def __repr__(self) -> str:
         return f"<pxpl5.SweepResults of {len(self)} points>"
+
+    def _repr_html_(self) -> str:
+        return self.table._repr_html_()
 
 
 def sweep(
@@ -200,7 +121,7 @@ def _swept(
     store = _native.Store(space._native, folder, resume)
     with reporting(progress, "points") as told:
         if client is None:
-            store.run(threads or os.cpu_count() or 1, told)
+            store.run(optional("threads", threads, 1) or os.cpu_count() or 1, told)
         else:
             Cluster(space, store, client, told).run()
     lines = store.lines()

@@ -7,14 +7,21 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from . import _native
+from ._errors import SettingError
 from ._native import Table
 
 
 def _cleaned(value: object) -> object:
     """What is no number becomes null: JSON has no name for it."""
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, float):
         return value if isfinite(value) else None
+    if isinstance(value, np.ndarray):
+        return _cleaned(value.tolist())
     if isinstance(value, Mapping):
         return {key: _cleaned(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
@@ -24,4 +31,11 @@ def _cleaned(value: object) -> object:
 
 def table_of(rows: Sequence[Mapping[str, Any]], definitions: Mapping[str, str] | None = None) -> Table:
     """A table of dictionaries: nested names with points, lists as JSON; a column has a type where all its values have it."""
-    return _native.table_of_rows(json.dumps([_cleaned(row) for row in rows]), dict(definitions or {}))
+    for number, row in enumerate(rows):
+        if not isinstance(row, Mapping):
+            raise SettingError(f"row {number}: expected a dictionary, found {type(row).__name__}")
+    try:
+        text = json.dumps([_cleaned(row) for row in rows])
+    except TypeError as error:
+        raise SettingError(f"rows: expected numbers, texts, truth values, lists and dictionaries ({error})") from None
+    return _native.table_of_rows(text, dict(definitions or {}))

@@ -71,8 +71,10 @@ def test_a_wrong_recording_names_its_line(tmp_path: Path) -> None:
     (tmp_path / "head.csv").write_text("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,zero,0,1,0,0,0\n")
     with pytest.raises(pxpl5.SettingError, match="line 3"):
         pxpl5.Motion.recording(tmp_path / "head.csv")
-    with pytest.raises(pxpl5.SettingError, match=r"expected shapes \(2, 3\) and \(2, 4\)"):
+    with pytest.raises(pxpl5.SettingError, match=r"quaternions: expected shape \(n, 4\), found \(2, 3\)"):
         pxpl5.Motion.from_arrays(np.zeros(2), np.zeros((2, 3)), np.zeros((2, 3)))
+    with pytest.raises(pxpl5.SettingError, match=r"expected shapes \(2, 3\) and \(2, 4\), found \(3, 3\)"):
+        pxpl5.Motion.from_arrays(np.zeros(2), np.zeros((3, 3)), np.zeros((3, 4)))
 
 
 def test_numbers_of_a_tracker_can_be_set() -> None:

@@ -84,7 +84,7 @@ def test_what_a_policy_raises_is_raised_where_it_is_run() -> None:
 
     with pytest.raises(LookupError, match="no policy"):
         run(pxpl5.PolicyPipeline(wrong))
-    with pytest.raises(TypeError):
+    with pytest.raises(pxpl5.SettingError, match=r"expected a list of pairs \(region, renderer\), found 'renderers'"):
         run(pxpl5.PolicyPipeline(lambda frame: "renderers"))  # type: ignore[arg-type, return-value]
     with pytest.raises(pxpl5.SettingError, match="shading: expected phong or gouraud"):
         pxpl5.PolicyPipeline(dealt, shading="flat")

@@ -1,5 +1,9 @@
 """Sweeps on this computer."""
 
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -49,8 +53,9 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Path) -> None:
 
 
 def test_a_point_that_cannot_be_run_says_why() -> None:
-    rows = pxpl5.sweep(pxpl5.SweepSpace(BASE, {"triangles": [50, 1_000_000]}), progress=False).table.rows()
-    assert [row["status"] for row in rows] == ["done", "failed"] and rows[1]["error"]
+    """Slats binds 20 regions, four to a renderer: four renderers are too few."""
+    rows = pxpl5.sweep(pxpl5.SweepSpace(BASE, {"machine.n_renderers": [4, 5]}), progress=False).table.rows()
+    assert [row["status"] for row in rows] == ["failed", "done"] and rows[0]["error"]
 
 
 def test_spaces_of_files_machines_and_ranges() -> None:
@@ -125,6 +130,31 @@ def test_a_large_cluster_has_some_points_estimated_for_all() -> None:
 def test_rows_survive_the_way_to_the_client() -> None:
     rows = [('{"point":0,"error":"2 µs"}', 0.25), ('{"point":1}', 1e-9)]
     assert unpacked(packed(rows)) == rows
+
+
+INTERRUPTED = """
+import pxpl5, time
+space = pxpl5.SweepSpace(
+    {"pipeline": "rendering-control", "scene": "typical:8000", "fields": 20000, "measure": "latency_ms.mean"},
+    {"triangles": [7000, 8000]})
+print("begun", flush=True)
+try:
+    pxpl5.sweep(space, threads=2, progress=False)
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic(), flush=True)
+"""
+
+
+def test_ctrl_c_ends_the_points_in_progress() -> None:
+    """A point takes many minutes. The interrupt must not wait for its end."""
+    process = subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None and process.stdout.readline() == "begun\n"
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    sent_s = time.monotonic()
+    out, _ = process.communicate(timeout=60)
+    assert "interrupted" in out
+    print(f"{float(out.split()[1]) - sent_s:.3f} s from the signal to the exception")
 
 
 def test_a_point_is_told_once_and_kept_once(tmp_path: Path) -> None:

@@ -3,8 +3,7 @@
 use pxpl5::lab::manifest::ManifestError;
 use pxpl5::sweep::SweepError;
 use pxpl5::{ExperimentError, FileError, SnapshotError, StudyError};
-use std::fmt::Display;
-use std::process::ExitCode;
+use std::fmt::{self, Display};
 
 /// Exit code for a wrong command line or experiment file.
 const USAGE: u8 = 2;
@@ -35,8 +34,34 @@ impl CliError {
         &self.message
     }
 
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.code)
+    pub(crate) fn exit_code(&self) -> u8 {
+        self.code
+    }
+}
+
+/// An error of a command, with the message that the command prints.
+#[derive(Debug)]
+pub struct CommandError(CliError);
+
+impl CommandError {
+    /// Returns the exit code of the command: 1 for a failure, 2 for a wrong command line or experiment file.
+    #[must_use]
+    pub const fn exit_code(&self) -> u8 {
+        self.0.code
+    }
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.message)
+    }
+}
+
+impl std::error::Error for CommandError {}
+
+impl From<CliError> for CommandError {
+    fn from(error: CliError) -> Self {
+        Self(error)
     }
 }
 
@@ -109,8 +134,8 @@ fn advice(error: &ExperimentError) -> &'static str {
 }
 
 /// Prints help, version or a command line error, and returns the exit code.
-pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+pub(crate) fn usage(error: &clap::Error) -> u8 {
     // A closed pipe (`| head`) is not an error.
     let _ = error.print();
-    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE))
+    u8::try_from(error.exit_code()).unwrap_or(USAGE)
 }

@@ -55,9 +55,12 @@ mod volume;
 /// The emulator, re-exported so that a crate with its own pipelines needs no other dependency.
 pub use pxpl5;
 
+pub use error::CommandError;
+
 use clap::{Parser, Subcommand};
 use error::CliError;
 use pxpl5::Registry;
+use std::ffi::OsString;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -133,20 +136,43 @@ enum Command {
 /// Runs the command line of this process with the pipelines and displays of a registry, and returns the exit code.
 #[must_use]
 pub fn main(registry: Arc<Registry>) -> ExitCode {
+    ExitCode::from(run_arguments(registry, std::env::args_os()))
+}
+
+/// Runs a command line with the pipelines and displays of a registry, and returns the exit code. The first argument is
+/// the name of the program.
+///
+/// The first call in a process determines the registry of all calls.
+#[must_use]
+pub fn run_arguments(registry: Arc<Registry>, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     version::state_commit();
     // The options of pipelines must be known before clap builds the command line.
     options::know(registry);
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => return error::usage(&error),
     };
     match run(cli.command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             terminal::print_error(&format!("pxpl5: {}\n", error.message()));
             error.exit_code()
         }
     }
+}
+
+/// Runs a command line like [`run_arguments`], and returns the error instead of its text on standard error.
+///
+/// # Errors
+///
+/// Returns [`CommandError`] for a wrong command line, and for a command that fails.
+pub fn try_arguments(
+    registry: Arc<Registry>,
+    arguments: impl IntoIterator<Item = OsString>,
+) -> Result<(), CommandError> {
+    options::know(registry);
+    let cli = Cli::try_parse_from(arguments).map_err(CliError::usage)?;
+    Ok(run(cli.command)?)
 }
 
 fn run(command: Option<Command>) -> Result<(), CliError> {

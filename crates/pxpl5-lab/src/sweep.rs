@@ -49,7 +49,7 @@ pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
 pub use point::{Status, SweepRow};
-pub use run::{RunOptions, run};
+pub use run::{RunOptions, run, run_stoppable};
 pub use shard::Shard;
 pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};

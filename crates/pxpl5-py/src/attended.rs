@@ -13,7 +13,7 @@ use std::time::Duration;
 pub(crate) struct Progress {
     done: AtomicU64,
     of: AtomicU64,
-    given_up: AtomicBool,
+    given_up: Arc<AtomicBool>,
 }
 
 impl Progress {
@@ -23,6 +23,16 @@ impl Progress {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
+    /// Asks the work to stop.
+    pub(crate) fn stop(&self) {
+        self.given_up.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns the flag that becomes true when the caller asks the work to stop.
+    pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.given_up)
+    }
+
     /// Returns true if the caller has asked the work to stop.
     pub(crate) fn is_stopped(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
@@ -30,7 +40,7 @@ impl Progress {
 }
 
 /// Time between two checks for new progress and Ctrl-C.
-const LOOK: Duration = Duration::from_millis(50);
+pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps. It
 /// is called at most twenty times a second, and once at the end.
@@ -63,7 +73,7 @@ pub(crate) fn attended<T: Send + 'static>(
         let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
         if let Err(error) = looked {
             // Ask the work to stop, and raise the exception.
-            progress.given_up.store(true, Ordering::Relaxed);
+            progress.stop();
             if waits {
                 py.detach(|| end(&mut results));
             }
@@ -81,7 +91,7 @@ pub(crate) fn attended<T: Send + 'static>(
 
 /// Stack size of the worker thread in bytes, equal to that of a main thread. The emulator has not been tested with a
 /// smaller stack.
-const STACK_BYTES: usize = 8 << 20;
+pub(crate) const STACK_BYTES: usize = 8 << 20;
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
 

@@ -9,27 +9,27 @@ use pythonize::pythonize;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Converts a serializable value of the library to a Python object.
+/// Converts a serializable value of the library to a Python object. A number that was not measured becomes None, as in
+/// JSON.
 pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
-    Ok(pythonize(py, value)?)
+    // JSON has no NaN: a number without a finite value becomes null.
+    let value = serde_json::to_value(value).map_err(wrong_setting)?;
+    Ok(pythonize(py, &value)?)
 }
 
-/// A number from Python, which stays an integer or a real number as it was given.
-#[derive(FromPyObject)]
-pub(crate) enum Number {
-    /// An integer from 0 to 2^64 - 1.
-    Whole(u64),
-    /// A real number.
-    Real(f64),
-}
-
-impl From<Number> for Value {
-    fn from(number: Number) -> Self {
-        match number {
-            Number::Whole(number) => Self::Whole(number),
-            Number::Real(number) => Self::Real(number),
-        }
+/// Returns a number from Python. An integer stays an integer.
+///
+/// # Errors
+///
+/// `SettingError` with the path of the parameter, the expected and the found value.
+fn number(path: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    if let Ok(whole) = value.extract::<u64>() {
+        return Ok(Value::Whole(whole));
     }
+    if let Ok(real) = value.extract::<f64>() {
+        return Ok(Value::Real(real));
+    }
+    Err(wrong_setting(format!("{path}: expected a number, found {}", value.repr()?)))
 }
 
 /// Returns the names of the built-in machines, each with a description and its source. The machines of the papers come
@@ -48,13 +48,13 @@ pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
 pub(crate) fn machine_parameters<'py>(
     py: Python<'py>,
     preset: &str,
-    changes: BTreeMap<String, Number>,
+    changes: BTreeMap<String, Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let machine = MachineConfig::preset(preset).map_err(wrong_setting)?;
     let mut machine = registry().machine_of(machine);
     // Apply the changes, then check the machine as a whole.
     for (path, value) in changes {
-        machine.set(&path, value).map_err(wrong_setting)?;
+        machine.set(&path, number(&path, &value)?).map_err(wrong_setting)?;
     }
     machine.check().map_err(wrong_setting)?;
     python(

@@ -1,19 +1,25 @@
 //! An experiment with checked settings, which Python can run.
 
 use crate::attended::{Progress, attended};
-use crate::errors::{failed_run, raised, wrong_setting};
-use crate::motion::{CallableMotion, Motion};
-use crate::outcome::Outcome;
-use crate::policy::{Asked, PolicyPipeline};
+use crate::catalogue::python;
+use crate::errors::wrong_setting;
+use crate::frames::{Frames, film_bytes};
+use crate::functions::PythonFunctions;
+use crate::motion::Motion;
+use crate::outcome::{Outcome, exception, outcome_of_run};
+use crate::policy::Asked;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::stepper::{MachineThread, Stepper};
 use pxpl5::device::PixelWorker;
+use pxpl5::firmware::Shading;
+use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, Measure, PeriodNumber, Pipeline, Plan, Results, Workstation,
-    levels, registry,
+    Experiment as Native, ExperimentError, Host, Keep, PeriodNumber, Pipeline, Pixels, Plan, PolicyPipeline,
+    RegionPolicy, Results, SurfaceId, Workstation, levels, registry, what_if,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use std::fmt;
 use std::sync::Arc;
 
@@ -22,9 +28,7 @@ use std::sync::Arc;
 pub(crate) struct Experiment {
     plan: Plan,
     native: Native,
-    /// Python function that computes the head's motion during the run, or `None` for another motion.
-    motion: Option<Arc<CallableMotion>>,
-    policy: Option<Arc<Asked>>,
+    functions: PythonFunctions,
 }
 
 #[pymethods]
@@ -51,10 +55,12 @@ impl Experiment {
             None => py.detach(|| plan.load_scene()).map_err(wrong_setting)?,
         };
         let mut native = plan.experiment(scene);
-        let policy = policy.map(|policy| Arc::new(Asked::new(policy)));
+        let policy = policy.map(|policy| Arc::new(Asked::new(py, policy)));
         // A policy needs a pipeline of its own, so the experiment is built again from the other settings.
         if let Some(asked) = &policy {
-            let pipeline: Arc<dyn Pipeline> = Arc::new(PolicyPipeline::new(Arc::clone(asked), phong));
+            let shading = if phong { Shading::Phong } else { Shading::Gouraud };
+            let policy: Arc<dyn RegionPolicy> = Arc::<Asked>::clone(asked);
+            let pipeline: Arc<dyn Pipeline> = Arc::new(PolicyPipeline::new(policy, shading));
             native = Native::with(plan.machine.clone(), pipeline, Arc::clone(native.scene()))
                 .fields(plan.fields)
                 .seed(plan.seed)
@@ -72,7 +78,7 @@ impl Experiment {
             native = native.head(pxpl5::Head::clone(&head).moving(Arc::clone(&motion.moving)));
         }
         let motion = motion.and_then(|motion| motion.called.clone());
-        Ok(Self { plan, native, motion, policy })
+        Ok(Self { plan, native, functions: PythonFunctions { motion, policy } })
     }
 
     /// Returns a hash of all settings and inputs on which the trace of the run depends.
@@ -80,7 +86,7 @@ impl Experiment {
     /// Raises any exception of a Python function that the experiment calls.
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         let hash = py.detach(|| self.native.config_hash().to_string());
-        self.check()?;
+        self.functions.check()?;
         Ok(hash)
     }
 
@@ -110,15 +116,75 @@ impl Experiment {
     ) -> PyResult<Outcome> {
         let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
-        let asked = (self.motion.clone(), self.policy.clone());
+        let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
-        let result = attended(py, progress, true, move |told| run(&native, workstation, asked, told));
+        let result = attended(py, progress, true, move |told| run(&native, workstation, functions, told));
         // An exception of a Python function takes precedence over the error that it causes in the run.
-        self.check()?;
-        match result? {
-            Ok(outcome) => Ok(Outcome::of(outcome, &self.plan.measure)),
-            Err(error) => Err(exception(py, *error, &self.plan.measure)),
-        }
+        self.functions.check()?;
+        outcome_of_run(py, result?, &self.plan.measure)
+    }
+
+    /// Begins the run and returns a stepper, which advances the run on request. ``keep_everything`` is as in
+    /// :meth:`run`.
+    ///
+    /// Raises :class:`pxpl5.SettingError` if the machine cannot be built.
+    #[pyo3(signature = (keep_everything = true))]
+    fn stepper(&self, py: Python<'_>, keep_everything: bool) -> PyResult<Stepper> {
+        let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
+        let (native, told) = self.on_host(Workstation::with_threads(0));
+        let thread = MachineThread::start(py, native.keep(keep), told.stop_flag());
+        self.functions.check()?;
+        let thread = thread?.map_err(|error| exception(py, error, &self.plan.measure))?;
+        Ok(Stepper { thread, checks: self.functions.clone(), measures: self.plan.measure.clone() })
+    }
+
+    /// Returns an iterator over the pictures of a run, one for each of ``fields`` display periods from ``first`` on. A
+    /// picture shows the screen at the end of its period. ``surface`` is the number of a surface, or None for all
+    /// surfaces side by side. The experiment is run again for this, with pixels.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for a surface or a number of fields that does not exist.
+    fn frames(&self, surface: Option<u16>, first: u64, fields: u64) -> PyResult<Frames> {
+        let (film, told) = self.film_of(surface, first, fields);
+        Frames::start(film, told, self.functions.clone())
+    }
+
+    /// Returns the pictures of :meth:`frames` as an animated PNG at the true rate.
+    ///
+    /// Raises the same exceptions as :meth:`frames`.
+    fn film<'py>(
+        &self,
+        py: Python<'py>,
+        surface: Option<u16>,
+        first: u64,
+        fields: u64,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (film, told) = self.film_of(surface, first, fields);
+        let texts = [
+            ("config_hash", self.native.config_hash().to_string()),
+            ("settings", self.plan.settings_for_any_folder().to_string()),
+        ];
+        let texts = texts.map(|(key, text)| (key.to_owned(), text)).into();
+        Ok(PyBytes::new(py, &film_bytes(py, film, texts, &told, &self.functions)?))
+    }
+
+    /// Returns the number of display periods that the experiment simulates.
+    #[getter]
+    fn fields(&self) -> u64 {
+        self.native.length()
+    }
+
+    /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment is run again
+    /// for each resource, unless formulas give the pipeline's times.
+    ///
+    /// Raises the same exceptions as :meth:`run`.
+    fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (native, functions) = (self.native.clone(), self.functions.clone());
+        let result = attended(py, None, true, move |told| {
+            let host = StoppableHost { workstation: Workstation::with_threads(1), told, functions };
+            what_if(&registry(), &native.host(host)).map_err(Box::new)
+        });
+        self.functions.check()?;
+        python(py, &result?.map_err(|error| exception(py, *error, &self.plan.measure))?)
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
@@ -131,7 +197,7 @@ impl Experiment {
             pxpl5::Level::Analytic => levels::summarise(&registry(), &native).map(Results::of_closed_form),
             _ => native.run().map(Results::of_run),
         });
-        self.check()?;
+        self.functions.check()?;
         let results = result.map_err(|error| exception(py, error, &self.plan.measure))?;
         let measured = PyDict::new(py);
         for measure in &self.plan.measure {
@@ -142,29 +208,37 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Raises the exception that a Python function of the experiment has raised, if there is one.
-    fn check(&self) -> PyResult<()> {
-        self.motion.iter().try_for_each(|called| called.check())?;
-        self.policy.iter().try_for_each(|asked| asked.check())
+    /// Returns the experiment on a host that Python can stop, and the flag that stops the host.
+    fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
+        let told = Arc::new(Progress::default());
+        let host = StoppableHost { workstation, told: Arc::clone(&told), functions: self.functions.clone() };
+        (self.native.clone().host(host), told)
+    }
+
+    fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
+        let (native, told) = self.on_host(Workstation::with_threads(0));
+        // The last picture is final only one field later.
+        let length = self.native.length().max(first.saturating_add(fields).saturating_add(1));
+        let surfaces = surface.map_or(FilmSurfaces::All, |surface| FilmSurfaces::One(SurfaceId(surface)));
+        let native = native.pixels(Pixels::Lazy).fields(length);
+        (Film::new(native, PeriodNumber(first), fields, surfaces), told)
     }
 }
 
 /// Greatest number of fields of a run that checks for Ctrl-C in every field.
 const LOOKED_AT: u64 = 20_000;
 
-type AskedOfPython = (Option<Arc<CallableMotion>>, Option<Arc<Asked>>);
-
 fn run(
     native: &Native,
     workstation: Workstation,
-    (motion, policy): AskedOfPython,
+    functions: PythonFunctions,
     told: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
-    let host = StoppableHost { workstation, told: Arc::clone(&told), motion, policy };
+    let host = StoppableHost { workstation, told: Arc::clone(&told), functions };
     let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
         told.tell(field.since(PeriodNumber::FIRST), fields);
         Ok(())
@@ -176,8 +250,7 @@ fn run(
 struct StoppableHost {
     workstation: Workstation,
     told: Arc<Progress>,
-    motion: Option<Arc<CallableMotion>>,
-    policy: Option<Arc<Asked>>,
+    functions: PythonFunctions,
 }
 
 impl fmt::Debug for StoppableHost {
@@ -192,34 +265,10 @@ impl Host for StoppableHost {
     }
 
     fn is_stopped(&self) -> bool {
-        self.told.is_stopped()
-            || self.motion.as_ref().is_some_and(|called| called.has_raised())
-            || self.policy.as_ref().is_some_and(|asked| asked.has_raised())
+        self.told.is_stopped() || self.functions.has_raised()
     }
 
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {
         self.workstation.pixel_worker()
-    }
-}
-
-/// Converts an error of the library to an exception, which carries the values measured until the error.
-fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
-    let text = error.to_string();
-    let (name, partial, needed) = match error {
-        ExperimentError::TooShort { needed, partial, .. } => ("TooShortError", partial, needed),
-        ExperimentError::Run { partial, .. } => ("RunError", partial, None),
-        ExperimentError::Stopped(_) => return failed_run(text),
-        _ => return wrong_setting(text),
-    };
-    // The exception carries the partial outcome and the number of fields that a run would need.
-    let exception = raised(name, &text);
-    let value = exception.value(py);
-    let partial = Py::new(py, Outcome::of(*partial, measures));
-    let set = partial
-        .and_then(|partial| value.setattr("_native", partial))
-        .and_then(|()| value.setattr("fields_needed", needed));
-    match set {
-        Ok(()) => exception,
-        Err(error) => error,
     }
 }

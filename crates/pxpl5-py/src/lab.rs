@@ -6,7 +6,12 @@ use crate::errors::{failed_run, wrong_setting};
 use crate::settings::Settings;
 use pxpl5::compare::CompareQuery;
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
-use pxpl5::limit::{Limit, LimitQuery, Model};
+use pxpl5::lab::diff::Changed;
+use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
+use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery, Values};
+use pxpl5::readings::run as rank;
+use pxpl5::rig::{PASSES, Rig};
+use pxpl5::tracking::rig::{Latency, Side};
 use pxpl5::{Goal, Level, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -157,4 +162,186 @@ pub(crate) fn limit<'py>(
             "scene": drawn,
         }),
     )
+}
+
+/// Finds the values of a setting with which an experiment reaches a goal. Returns a dictionary with over, goal, values,
+/// fields, least, most, reached, tried, missed_at and because.
+///
+/// ``low`` and ``high`` are the ends of the range that is searched. Without them the range of the setting's sources is
+/// searched. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
+///
+/// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
+#[pyfunction]
+#[pyo3(signature = (settings, key, *, low = None, high = None, rate_hz = None, latency_fields = None, fields = None, progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn limit_over<'py>(
+    py: Python<'py>,
+    settings: &Settings,
+    key: &str,
+    low: Option<f64>,
+    high: Option<f64>,
+    rate_hz: Option<f64>,
+    latency_fields: Option<f64>,
+    fields: Option<u64>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut file = settings.file.clone();
+    let first = file.resolve().map_err(wrong_setting)?;
+    let fields = fields.unwrap_or(first.limit.fields);
+    file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "keyword fields").map_err(wrong_setting)?;
+    // A range without an end has the end of the setting's sources.
+    let usual = || OverQuery::usual_values(&first, key).map_err(wrong_setting);
+    let values = match (low, high) {
+        (None, None) => usual()?,
+        (low, high) => {
+            let from = low.map_or_else(|| usual().map(|values| values.from), Ok)?;
+            let to = high.map_or_else(|| usual().map(|values| values.last()), Ok)?;
+            let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < MAX_WHOLE;
+            let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
+            values.ok_or_else(|| wrong_setting(format!("low and high: expected a range, found {from} to {to}")))?
+        }
+    };
+    let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
+    let query = OverQuery { file, key: key.to_owned(), values, goal };
+    let (tried, of) = (query.clone(), VALUES);
+    let limit = attended(py, progress, false, move |told| {
+        tried.search(|done| told.tell(done, of.max(done))).map_err(|error| error.to_string())
+    })?;
+    let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
+    found["over"] = key.into();
+    found["goal"] = json!(query.goal);
+    found["fields"] = fields.into();
+    found["low"] = query.values.from.into();
+    found["high"] = query.values.last().into();
+    python(py, &found)
+}
+
+/// Estimated number of values that a search over a setting tries: five values, and two bisections of 64 steps.
+const VALUES: u64 = 12;
+
+/// Whole numbers below this limit are exact as real numbers.
+const MAX_WHOLE: f64 = 1e15;
+
+/// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
+///
+/// Raises :class:`pxpl5.SettingError` for invalid text.
+#[pyfunction]
+pub(crate) fn diff<'py>(py: Python<'py>, a: &str, b: &str) -> PyResult<Bound<'py, PyAny>> {
+    let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).map_err(wrong_setting);
+    let found = pxpl5::lab::diff::diff(&read(a)?, &read(b)?);
+    let rows = |changes: &[Changed]| -> Vec<serde_json::Value> {
+        let row = |changed: &Changed| json!({ "key": changed.key, "a": changed.a, "b": changed.b, "percent": changed.percent() });
+        changes.iter().map(row).collect()
+    };
+    python(
+        py,
+        &json!({
+            "same_trace": found.same_trace,
+            "settings": rows(&found.settings),
+            "results": rows(&found.results),
+            "equal": found.equal,
+        }),
+    )
+}
+
+/// Measures the latency of a pipeline with the pendulum rig of I3D95: from outside with photodiodes, and from inside
+/// with time stamps. ``passes`` is the number of low points, and ``line`` the line of the photodiode. Returns a
+/// dictionary with outside, inside, outside_less_inside_ms, agrees and bounds.
+///
+/// Raises :class:`pxpl5.SettingError` for invalid settings, and for a pipeline that the rig cannot measure.
+#[pyfunction]
+#[pyo3(signature = (settings, passes = None, line = None))]
+pub(crate) fn rig<'py>(
+    py: Python<'py>,
+    settings: &Settings,
+    passes: Option<usize>,
+    line: Option<u32>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let plan = settings.plan()?;
+    let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
+    let tracker = tracker.ok_or_else(|| wrong_setting("the rig: expected a head with a tracker, found none"))?;
+    let mut rig = Rig { seed: plan.seed, passes: passes.unwrap_or(PASSES), ..Rig::assumed(tracker) };
+    rig.rig.photodiode_line = line.unwrap_or(rig.rig.photodiode_line);
+    let measured = attended(py, None, false, move |_| {
+        rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
+    })?;
+    let measured = measured.map_err(wrong_setting)?;
+    let latency = |latency: &Latency| {
+        json!({
+            "n": latency.n,
+            "mean_ms": latency.mean_s * 1e3,
+            "sd_ms": latency.deviation_s * 1e3,
+            "min_ms": latency.least_s * 1e3,
+            "max_ms": latency.greatest_s * 1e3,
+        })
+    };
+    let side = |side: &Side| {
+        json!({
+            "tracking": latency(&side.tracking),
+            "rendering": latency(&side.rendering),
+            "total": latency(&side.total),
+        })
+    };
+    python(
+        py,
+        &json!({
+            "outside": side(&measured.outside),
+            "inside": side(&measured.inside),
+            "outside_less_inside_ms": measured.outside_less_inside_s() * 1e3,
+            "tracking_bound_ms": measured.tracking_bound_ps as f64 * 1e-9,
+            "rendering_bound_ms": measured.rendering_bound_ps as f64 * 1e-9,
+            "rendering_early_ms": measured.rendering_early_ps as f64 * 1e-9,
+            "agrees": measured.agrees(),
+        }),
+    )
+}
+
+/// The measurement of the levels that is recorded in the repository.
+const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
+
+/// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is
+/// recorded in the repository. Otherwise the errors are measured anew over this number of random experiments, and with
+/// ``speeds`` also the speeds. Returns the record as a dictionary.
+///
+/// Raises :class:`pxpl5.RunError` if an experiment fails.
+#[pyfunction]
+#[pyo3(signature = (experiments = None, speeds = false, progress = None))]
+pub(crate) fn levels<'py>(
+    py: Python<'py>,
+    experiments: Option<u64>,
+    speeds: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let record = match experiments {
+        None => LevelRecord::read(LEVELS).map_err(failed_run)?,
+        Some(experiments) => {
+            let query = LevelQuery { experiments, speeds };
+            let measured = attended(py, progress, false, move |told| {
+                compare_with(query, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+            })?;
+            measured.map_err(failed_run)?
+        }
+    };
+    python(py, &record)
+}
+
+/// Ranks the interpretations of the papers' open questions by their fit to the figures of Rendering Control. The best
+/// ``best`` interpretations are also simulated with events. ``seeds`` and ``frames`` are the size of the fly-throughs.
+/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent.
+///
+/// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
+#[pyfunction]
+#[pyo3(signature = (best = 20, seeds = 6, frames = 150, progress = None))]
+pub(crate) fn readings<'py>(
+    py: Python<'py>,
+    best: usize,
+    seeds: u64,
+    frames: u64,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let ranked = attended(py, progress, false, move |told| {
+        let bench = Bench::new(Level::Analytic).with_mig(seeds, frames);
+        rank(&bench, best, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+    })?;
+    python(py, &ranked.map_err(failed_run)?)
 }

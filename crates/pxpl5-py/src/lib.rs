@@ -19,10 +19,14 @@
 //! **Not here:** numbers, models and file formats of the emulator. Code that only Python needs (defaults of keywords,
 //! HTML) is in python/pxpl5.
 
+mod arrays;
 mod attended;
 mod catalogue;
+mod command;
 mod errors;
 mod experiment;
+mod frames;
+mod functions;
 mod lab;
 mod motion;
 mod outcome;
@@ -31,6 +35,7 @@ mod policy;
 mod processor;
 mod scene;
 mod settings;
+mod stepper;
 mod sweep;
 mod table;
 mod volume;
@@ -45,25 +50,31 @@ mod _native {
         builtin_scenes, displays, keys, machine_parameters, pipelines, presets, quantities, tracking_parameters,
     };
     #[pymodule_export]
+    use crate::command::{command, plot, version};
+    #[pymodule_export]
     use crate::experiment::Experiment;
     #[pymodule_export]
-    use crate::lab::{compare, figure, figure_ids, figures, limit};
+    use crate::frames::Frames;
     #[pymodule_export]
-    use crate::motion::Motion;
+    use crate::lab::{compare, diff, figure, figure_ids, figures, levels, limit, limit_over, readings, rig};
+    #[pymodule_export]
+    use crate::motion::{Motion, motion_of_text};
     #[pymodule_export]
     use crate::outcome::Outcome;
     #[pymodule_export]
-    use crate::picture::Picture;
+    use crate::picture::{Picture, picture_of_parts, picture_of_png};
     #[pymodule_export]
     use crate::processor::{Processor, Program, assemble, disassemble};
     #[pymodule_export]
-    use crate::scene::Scene;
+    use crate::scene::{Scene, scene_of_parts};
     #[pymodule_export]
     use crate::settings::Settings;
     #[pymodule_export]
+    use crate::stepper::Stepper;
+    #[pymodule_export]
     use crate::sweep::{Store, Sweep};
     #[pymodule_export]
-    use crate::table::{Table, table_of_rows};
+    use crate::table::{Table, table_of_columns, table_of_rows};
     #[pymodule_export]
     use crate::volume::{Volume, volume_figures, volume_keys};
 }

@@ -1,16 +1,17 @@
 //! Motions of the head: by name, from recordings, from arrays, or from a Python function.
 
+use crate::arrays::{reals1, reals2};
 use crate::errors::wrong_setting;
 use glam::{DQuat, DVec3};
+use numpy::PyArray2;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
-use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pxpl5::tracking::motion::{Columns, End, Motion as Moving, Recording, RecordingFormat};
 use pxpl5::tracking::time::{nearest_ps, seconds};
 use pxpl5::tracking::{Pose, SettingSink};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
-use std::fs::File;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -25,12 +26,46 @@ pub(crate) struct Motion {
     /// Python function that computes the poses of this motion, and its exception. `None` for other motions.
     pub(crate) called: Option<Arc<CallableMotion>>,
     about: String,
+    origin: Origin,
+}
+
+/// The origin of a motion, from which the module `pickle` makes the motion again.
+enum Origin {
+    /// A name, which also contains all numbers of the motion.
+    Name,
+    /// The text of a recording, with the columns that its reader was given and the behaviour after the last sample.
+    Text { text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<String> },
+    /// A Python function.
+    Callable,
 }
 
 impl Motion {
-    fn of(moving: Arc<dyn Moving + Send + Sync>, about: String) -> Self {
-        Self { moving, called: None, about }
+    /// Reads the text of a recording. `about` names the recording in error messages.
+    fn read(text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<&str>, about: String) -> PyResult<Self> {
+        let mut chosen = Columns::default();
+        for (field, column) in &columns {
+            chosen.map(field, column).map_err(wrong_setting)?;
+        }
+        let format = RecordingFormat { columns: chosen, axes: None };
+        let recording =
+            Recording::read_as(text.as_slice(), &format).map_err(|error| wrong_setting(format!("{about}: {error}")))?;
+        let moving = Arc::new(recording.ending(end_named(end)?));
+        let origin = Origin::Text { text, columns, end: end.map(str::to_owned) };
+        Ok(Self { moving, called: None, about, origin })
     }
+}
+
+/// Returns the motion of a recording that `Motion.__reduce__` has taken apart.
+///
+/// Raises :class:`pxpl5.SettingError` as :meth:`pxpl5.Motion.recording`.
+#[pyfunction]
+pub(crate) fn motion_of_text(
+    text: Vec<u8>,
+    columns: BTreeMap<String, String>,
+    end: Option<&str>,
+    about: String,
+) -> PyResult<Motion> {
+    Motion::read(text, columns, end, about)
 }
 
 #[pymethods]
@@ -42,7 +77,8 @@ impl Motion {
     /// Raises :class:`pxpl5.SettingError` with the expected and the found text.
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        Ok(Self::of(pxpl5::compare::motion(name).map_err(wrong_setting)?, name.to_owned()))
+        let moving = pxpl5::compare::motion(name).map_err(wrong_setting)?;
+        Ok(Self { moving, called: None, about: name.to_owned(), origin: Origin::Name })
     }
 
     /// Reads a recorded motion from a file in the project's own format, or in the format of EuRoC or TUM. The contents
@@ -56,18 +92,12 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (path, *, columns = None, end = None))]
     fn recording(path: PathBuf, columns: Option<BTreeMap<String, String>>, end: Option<&str>) -> PyResult<Self> {
-        let mut chosen = Columns::default();
-        for (field, column) in columns.unwrap_or_default() {
-            chosen.map(&field, &column).map_err(wrong_setting)?;
-        }
         let name = path.display().to_string();
-        let file = File::open(&path).map_err(|error| wrong_setting(format!("{name} cannot be opened: {error}")))?;
-        let format = RecordingFormat { columns: chosen, axes: None };
-        let recording = Recording::read_as(file, &format).map_err(|error| wrong_setting(format!("{name}: {error}")))?;
-        Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), name))
+        let text = std::fs::read(&path).map_err(|error| wrong_setting(format!("{name} cannot be opened: {error}")))?;
+        Self::read(text, columns.unwrap_or_default(), end, name)
     }
 
-    /// Creates a recorded motion from arrays. ``times_s`` has shape (n,), with rising times in seconds from the start
+    /// Creates a recorded motion from arrays: anything that ``numpy.asarray`` takes. ``times_s`` has shape (n,), with rising times in seconds from the start
     /// of the run. ``positions`` has shape (n, 3), in metres. ``quaternions`` has shape (n, 4) with w, x, y, z.
     /// Positions are interpolated linearly and orientations by slerp. ``end`` is as in :meth:`recording`.
     ///
@@ -76,14 +106,16 @@ impl Motion {
     #[staticmethod]
     #[pyo3(signature = (times_s, positions, quaternions, *, end = None))]
     fn from_arrays(
-        times_s: PyReadonlyArray1<'_, f64>,
-        positions: PyReadonlyArray2<'_, f64>,
-        quaternions: PyReadonlyArray2<'_, f64>,
+        times_s: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        quaternions: &Bound<'_, PyAny>,
         end: Option<&str>,
     ) -> PyResult<Self> {
+        let times_s = reals1("times_s", times_s)?;
+        let positions = reals2("positions", positions, 3)?;
+        let quaternions = reals2("quaternions", quaternions, 4)?;
         let text = own_format(&times_s.as_array(), &positions.as_array(), &quaternions.as_array())?;
-        let recording = Recording::read(text.as_bytes()).map_err(|error| wrong_setting(format!("arrays: {error}")))?;
-        Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), "arrays".to_owned()))
+        Self::read(text.into_bytes(), BTreeMap::new(), end, "arrays".to_owned())
     }
 
     /// Creates a motion from a Python function. ``pose(time_s)`` must return (x, y, z, w, i, j, k) for an instant in
@@ -96,15 +128,19 @@ impl Motion {
     #[pyo3(signature = (pose, *, name = "callable"))]
     fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
         let called = Arc::new(CallableMotion { pose, name: name.to_owned(), raised: Mutex::default() });
-        Self { moving: called.clone(), called: Some(called), about: name.to_owned() }
+        Self { moving: called.clone(), called: Some(called), about: name.to_owned(), origin: Origin::Callable }
     }
 
     /// Returns the poses at the instants ``times_s``, an array of shape (n,) in seconds, 0 or later. The result has
     /// shape (n, 7): x, y, z, w, i, j, k.
     ///
     /// Raises any exception of a Python function that computes the motion.
-    fn poses<'py>(&self, py: Python<'py>, times_s: PyReadonlyArray1<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn poses<'py>(&self, py: Python<'py>, times_s: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let times_s = reals1("times_s", times_s)?;
         let times = times_s.as_array();
+        if let Some(wrong) = times.iter().find(|time| !(0.0..=MAX_TIME_S).contains(*time)) {
+            return Err(wrong_setting(format!("times_s: expected 0 to {MAX_TIME_S} seconds, found {wrong}")));
+        }
         let poses: Vec<f64> = times.iter().flat_map(|time| numbers(&self.moving.pose(nearest_ps(*time)))).collect();
         self.check()?;
         let poses = Array2::from_shape_vec((times.len(), 7), poses).map_err(wrong_setting)?;
@@ -116,6 +152,28 @@ impl Motion {
     #[getter]
     fn ends_s(&self) -> Option<f64> {
         self.moving.ends_ps().map(seconds)
+    }
+
+    /// Returns a table with the origin and the end of the motion, and a drawing of its first seconds, for notebooks.
+    fn _repr_html_(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.py().import("pxpl5._html")?.call_method1("motion", (slf, &slf.get().about))?.extract()
+    }
+
+    /// Returns the function and the arguments that make an equal motion, for the module ``pickle``.
+    ///
+    /// A motion of a Python function can be stored if its function can.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let restore = |name: &str| py.import("pxpl5._pickle")?.getattr(name);
+        match (&self.origin, &self.called) {
+            (Origin::Text { text, columns, end }, _) => {
+                let state = (PyBytes::new(py, text), columns.clone(), end.clone(), self.about.clone());
+                Ok((restore("recording")?, state.into_pyobject(py)?))
+            }
+            (_, Some(called)) => {
+                Ok((restore("callable_motion")?, (called.pose.clone_ref(py), &called.name).into_pyobject(py)?))
+            }
+            _ => Ok((restore("named_motion")?, (&self.about,).into_pyobject(py)?)),
+        }
     }
 
     /// Returns a text that describes the origin of the motion.
@@ -153,7 +211,13 @@ impl CallableMotion {
     }
 
     fn asked(&self, t_ps: u64) -> PyResult<Pose> {
-        let found: [f64; 7] = Python::attach(|py| self.pose.call1(py, (seconds(t_ps),))?.extract(py))?;
+        let found: [f64; 7] = Python::attach(|py| {
+            let answer = self.pose.call1(py, (seconds(t_ps),))?;
+            answer.extract(py).map_err(|_| {
+                let expected = "expected seven numbers, x, y, z and a unit quaternion w, i, j, k";
+                wrong_setting(format!("{} at {} s: {expected}, found {}", self.name, seconds(t_ps), answer.bind(py)))
+            })
+        })?;
         let [x, y, z, w, i, j, k] = found;
         let turn = DQuat::from_xyzw(i, j, k, w);
         let length = turn.length();
@@ -164,6 +228,9 @@ impl CallableMotion {
         Ok(Pose { position: DVec3::new(x, y, z), orientation: turn.normalize() })
     }
 }
+
+/// Greatest time of a pose in seconds. A time of a run in picoseconds has 64 bits.
+const MAX_TIME_S: f64 = 1.8e7;
 
 /// Largest difference between 1 and the length of a quaternion from Python. It allows rounding to a few digits.
 const UNIT: f64 = 1e-3;

@@ -1,18 +1,20 @@
 //! Results of a run for Python: numbers, tables, pictures and drawings.
 
 use crate::catalogue::python;
-use crate::errors::{failed_run, wrong_setting};
+use crate::errors::{failed_run, raised, wrong_setting};
 use crate::picture::Picture;
 use crate::table::{Column, Table};
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
+use pxpl5::arp::address_recalculation::AddressRecalculationPipeline;
+use pxpl5::arp::pictures::cross;
 use pxpl5::firmware::{Layout, PictureNumber};
 use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::{columns, origin, rows};
 use pxpl5::views::timeline::{TimelineOptions, svg};
+use pxpl5::{ExperimentError, Eye, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pxpl5::{Measure, Measured, side_by_side};
-use pxpl5::{PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -78,6 +80,40 @@ impl Outcome {
     }
 }
 
+/// Returns the outcome of a run, or raises the exception for its error.
+pub(crate) fn outcome_of_run(
+    py: Python<'_>,
+    result: Result<pxpl5::Outcome, Box<ExperimentError>>,
+    measures: &[Measure],
+) -> PyResult<Outcome> {
+    match result {
+        Ok(outcome) => Ok(Outcome::of(outcome, measures)),
+        Err(error) => Err(exception(py, *error, measures)),
+    }
+}
+
+/// Converts an error of the library to an exception, which carries the values measured until the error.
+pub(crate) fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
+    let text = error.to_string();
+    let (name, partial, needed) = match error {
+        ExperimentError::TooShort { needed, partial, .. } => ("TooShortError", partial, needed),
+        ExperimentError::Run { partial, .. } => ("RunError", partial, None),
+        ExperimentError::Stopped(_) => return failed_run(text),
+        _ => return wrong_setting(text),
+    };
+    // The exception carries the partial outcome and the number of fields that a run would need.
+    let exception = raised(name, &text);
+    let value = exception.value(py);
+    let partial = Py::new(py, Outcome::of(*partial, measures));
+    let set = partial
+        .and_then(|partial| value.setattr("_native", partial))
+        .and_then(|()| value.setattr("fields_needed", needed));
+    match set {
+        Ok(()) => exception,
+        Err(error) => error,
+    }
+}
+
 #[pymethods]
 impl Outcome {
     /// Returns the hash of the run's trace, including statistics. The command-line program and the Rust library give
@@ -116,6 +152,48 @@ impl Outcome {
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
         let measure = Measure::named(name).map_err(wrong_setting)?;
         Ok(measure.of(self.results(py)?))
+    }
+
+    /// Returns true if old records of the run were discarded, so that tables have only the last pictures.
+    fn has_discarded_records(&self, py: Python<'_>) -> PyResult<bool> {
+        self.look(py, |outcome| {
+            let kept = outcome.pictures().len() as u64;
+            outcome.has_discarded_records() || kept < outcome.tally().pictures
+        })
+    }
+
+    /// Returns the advice of the library if the machine was too slow for its scene, or if no picture was complete in
+    /// time. Returns None otherwise.
+    fn advice(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let (outcome, report) = self.run(py)?;
+        if let Some(too_heavy) = &report.too_heavy {
+            return Ok(Some(too_heavy.to_string()));
+        }
+        let is_empty = outcome.tally().complete == 0;
+        Ok(is_empty.then(|| "no picture was complete in time; the run has no latency".to_owned()))
+    }
+
+    /// Returns the six cube faces that an eye's display memory shows at the end, unfolded into a cross of 4 x 3 faces.
+    /// Returns None for a display without such memories.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for an eye or a memory that does not exist.
+    fn face(&self, py: Python<'_>, eye: &str, memory: usize) -> PyResult<Option<Picture>> {
+        let eye = match eye {
+            "left" => Eye::Left,
+            "right" => Eye::Right,
+            _ => return Err(wrong_setting(format!("eye: expected left or right, found {eye}"))),
+        };
+        let (outcome, _) = self.run(py)?;
+        let Some(display) = outcome.record().display_of_kind::<AddressRecalculationPipeline>() else {
+            return Ok(None);
+        };
+        let memories = display.memories(eye);
+        let Some(memory) = memories.get(memory) else {
+            let last = memories.len().saturating_sub(1);
+            return Err(wrong_setting(format!("memory: expected 0 to {last}, found {memory}")));
+        };
+        let picture = py.detach(|| cross(&memory.shown_faces(), 0));
+        Picture::of(py, picture, self.texts(py)?).map(Some)
     }
 
     /// Returns all measured quantities by name. The value is None for a quantity that the run does not have.

@@ -6,7 +6,7 @@ use numpy::ndarray::Array3;
 use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pxpl5::views::png_bytes;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyTuple};
 
 /// A picture with 8 bits each of red, green and blue for every pixel.
 ///
@@ -15,12 +15,13 @@ use pyo3::types::PyBytes;
 pub(crate) struct Picture {
     pixels: Py<PyArray3<u8>>,
     /// Texts that are stored in a PNG file of the picture, as pairs of keyword and text.
-    texts: Vec<(&'static str, String)>,
+    texts: Vec<(String, String)>,
 }
 
 impl Picture {
     /// Creates a picture from an image without copying its pixels.
     pub(crate) fn of(py: Python<'_>, picture: RgbImage, texts: Vec<(&'static str, String)>) -> PyResult<Self> {
+        let texts = texts.into_iter().map(|(key, text)| (key.to_owned(), text)).collect();
         let shape = (picture.height() as usize, picture.width() as usize, 3);
         let pixels = Array3::from_shape_vec(shape, picture.into_raw()).map_err(wrong_setting)?;
         Ok(Self { pixels: PyArray3::from_owned_array(py, pixels).unbind(), texts })
@@ -39,9 +40,27 @@ impl Picture {
 
 #[pymethods]
 impl Picture {
-    /// Creates a picture from an array of shape (height, width, 3), uint8. The pixels are copied.
+    /// Creates a picture from an array of shape (height, width, 3) with values 0 to 255. An array is anything that
+    /// ``numpy.asarray`` takes. The pixels are copied.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with the expected and the found shape or type.
     #[new]
-    fn new(py: Python<'_>, pixels: PyReadonlyArray3<'_, u8>) -> PyResult<Self> {
+    fn new(py: Python<'_>, pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let mut array = py.import("numpy")?.call_method1("asarray", (pixels,))?;
+        // Integers of another type are taken if all of them fit. A cast alone would change those that do not.
+        let bytes = array.call_method1("astype", ("uint8",));
+        if let Ok(bytes) = bytes
+            && matches!(array.getattr("dtype")?.getattr("kind")?.extract()?, 'i' | 'u')
+            && py.import("numpy")?.call_method1("array_equal", (&bytes, &array))?.is_truthy()?
+        {
+            array = bytes;
+        }
+        let Ok(pixels) = array.extract::<PyReadonlyArray3<'_, u8>>() else {
+            let (shape, element) = (array.getattr("shape")?, array.getattr("dtype")?);
+            return Err(wrong_setting(format!(
+                "pixels: expected shape (height, width, 3) with integers from 0 to 255, found {shape} of type {element}"
+            )));
+        };
         let pixels = pixels.as_array();
         if pixels.dim().2 != 3 || pixels.is_empty() {
             let found = pixels.dim();
@@ -79,7 +98,8 @@ impl Picture {
     /// Raises :class:`pxpl5.SettingError` if the picture cannot be encoded.
     pub(crate) fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.copied(py)?;
-        let bytes = py.detach(|| png_bytes(&picture, &self.texts)).map_err(wrong_setting)?;
+        let texts: Vec<(&str, String)> = self.texts.iter().map(|(key, text)| (key.as_str(), text.clone())).collect();
+        let bytes = py.detach(|| png_bytes(&picture, &texts)).map_err(wrong_setting)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -96,9 +116,36 @@ impl Picture {
         Ok(std::fs::write(path, bytes.as_bytes())?)
     }
 
+    /// Returns the function and the arguments that make an equal picture, for the module ``pickle``.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let state = (self.pixels.bind(py), self.texts.clone()).into_pyobject(py)?;
+        Ok((py.import("pxpl5._pickle")?.getattr("picture")?, state))
+    }
+
     /// Returns a text that states the size of the picture in pixels.
     fn __repr__(&self, py: Python<'_>) -> String {
         let dims = self.pixels.bind(py).dims();
         format!("<pxpl5.Picture of {} x {} pixels>", dims[1], dims[0])
     }
+}
+
+/// Returns the picture that `Picture.__reduce__` has taken apart.
+///
+/// Raises :class:`pxpl5.SettingError` as :class:`pxpl5.Picture`.
+#[pyfunction]
+pub(crate) fn picture_of_parts(
+    py: Python<'_>,
+    pixels: &Bound<'_, PyAny>,
+    texts: Vec<(String, String)>,
+) -> PyResult<Picture> {
+    Ok(Picture { texts, ..Picture::new(py, pixels)? })
+}
+
+/// Returns the picture of a PNG file's bytes. Texts in the file are left out.
+///
+/// Raises :class:`pxpl5.SettingError` for bytes that are no PNG.
+#[pyfunction]
+pub(crate) fn picture_of_png(py: Python<'_>, bytes: &[u8]) -> PyResult<Picture> {
+    let picture = py.detach(|| image::load_from_memory_with_format(bytes, image::ImageFormat::Png));
+    Picture::of(py, picture.map_err(wrong_setting)?.into_rgb8(), Vec::new())
 }

@@ -1,11 +1,17 @@
 //! Scenes for Python: built-in scenes, model files and arrays.
 
+use crate::arrays::{Count, reals2, wholes2};
+use crate::catalogue::python;
 use crate::errors::wrong_setting;
+use crate::table::escaped;
 use glam::Vec3;
 use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
 use numpy::{PyArray2, PyReadonlyArray2};
-use pxpl5::scene::{self, HeadMotion, Lighting, Placement, SceneParts, Sphere, Vertex};
+use pxpl5::scene::{self, Frame, HeadMotion, Hinge, Lighting, Placement, SceneParts, Sphere, Structure, Vertex};
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use pythonize::depythonize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -45,9 +51,9 @@ impl Scene {
         py.detach(|| scene::load_placed(path, placement)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Creates a scene from arrays, which are copied.
+    /// Creates a scene from arrays, which are copied. An array is anything that ``numpy.asarray`` takes, such as lists.
     ///
-    /// - ``vertices``: shape (n, 3), metres, floating point; ``triangles``: shape (m, 3), indices of vertices from 0.
+    /// - ``vertices``: shape (n, 3), metres; ``triangles``: shape (m, 3), indices of vertices from 0.
     /// - ``normals``: shape (n, 3), any length above 0; None for the mean of the adjacent triangles, weighted by area.
     /// - ``colours``: shape (n, 3), red, green and blue, 0 to 255; None for a light grey.
     /// - ``spheres``: shape (k, 4), centre and radius, metres; ``sphere_colours``: shape (k, 3), 0 to 255.
@@ -60,15 +66,21 @@ impl Scene {
                         fit = true, name = "arrays"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn from_arrays(
-        vertices: PyReadonlyArray2<'_, f64>,
-        triangles: PyReadonlyArray2<'_, i64>,
-        normals: Option<PyReadonlyArray2<'_, f64>>,
-        colours: Option<PyReadonlyArray2<'_, u8>>,
-        spheres: Option<PyReadonlyArray2<'_, f64>>,
-        sphere_colours: Option<PyReadonlyArray2<'_, u8>>,
+        vertices: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+        normals: Option<&Bound<'_, PyAny>>,
+        colours: Option<&Bound<'_, PyAny>>,
+        spheres: Option<&Bound<'_, PyAny>>,
+        sphere_colours: Option<&Bound<'_, PyAny>>,
         fit: bool,
         name: &str,
     ) -> PyResult<Self> {
+        let vertices = reals2("vertices", vertices, 3)?;
+        let triangles = wholes2("triangles", triangles, 3)?;
+        let normals = normals.map(|normals| reals2("normals", normals, 3)).transpose()?;
+        let colours = colours.map(|colours| wholes2("colours", colours, 3)).transpose()?;
+        let spheres = spheres.map(|spheres| reals2("spheres", spheres, 4)).transpose()?;
+        let sphere_colours = sphere_colours.map(|colours| wholes2("sphere_colours", colours, 3)).transpose()?;
         let mut positions = points("vertices", vertices.as_array())?;
         let triangles = indices(triangles.as_array(), positions.len())?;
         let mut balls = balls(spheres.as_ref().map(PyReadonlyArray2::as_array))?;
@@ -147,14 +159,44 @@ impl Scene {
     /// similar.
     ///
     /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
-    fn decimated(&self, py: Python<'_>, primitives: usize) -> PyResult<Self> {
-        py.detach(|| self.scene.decimated(primitives)).map(Self::of).map_err(wrong_setting)
+    fn decimated(&self, py: Python<'_>, primitives: Count) -> PyResult<Self> {
+        py.detach(|| self.scene.decimated(primitives.size())).map(Self::of).map_err(wrong_setting)
     }
 
     /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. A scene of closed
     /// surfaces looks the same.
     fn culled(&self) -> Self {
         Self::of(scene::Scene::clone(&self.scene).culled())
+    }
+
+    /// Returns a table of the scene's size and the numbers of its primitives, for notebooks.
+    fn _repr_html_(&self) -> String {
+        let scene = &self.scene;
+        let (centre, radius) = scene.bounding_sphere();
+        let rows = [
+            ("triangles", scene.triangles().len().to_string()),
+            ("spheres", scene.spheres().len().to_string()),
+            ("vertices", scene.vertices().len().to_string()),
+            ("structures", scene.structures().len().to_string()),
+            ("centre", format!("{:.3}, {:.3}, {:.3} m", centre.x, centre.y, centre.z)),
+            ("radius", format!("{radius:.3} m")),
+        ];
+        let rows: String =
+            rows.iter().map(|(name, value)| format!("<tr><td>{name}</td><td>{value}</td></tr>")).collect();
+        format!("<table><caption>{}</caption><tbody>{rows}</tbody></table>", escaped(scene.name()))
+    }
+
+    /// Returns the function and the arguments that make an equal scene, for the module ``pickle``.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let arrays = PyDict::new(py);
+        arrays.set_item("vertices", self.vertices(py))?;
+        arrays.set_item("normals", self.normals(py))?;
+        arrays.set_item("colours", self.colours(py))?;
+        arrays.set_item("triangles", self.triangles(py))?;
+        arrays.set_item("spheres", self.spheres(py))?;
+        arrays.set_item("sphere_colours", table(py, self.scene.spheres().iter().map(|sphere| sphere.colour)))?;
+        let rest = python(py, &Rest::of(&self.scene))?;
+        Ok((py.import("pxpl5._pickle")?.getattr("scene")?, (arrays, rest).into_pyobject(py)?))
     }
 
     /// Returns a text that states the name of the scene and its numbers of triangles and spheres.
@@ -201,7 +243,6 @@ fn points(name: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<Vec3>> {
 }
 
 fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
-    with_columns("triangles", &array, 3)?;
     let mut all = Vec::with_capacity(array.nrows());
     for (number, row) in array.rows().into_iter().enumerate() {
         let mut corners = [0; 3];
@@ -221,7 +262,6 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
 
 fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
     let Some(array) = array else { return Ok(Vec::new()) };
-    with_columns("spheres", &array, 4)?;
     Ok(array.rows().into_iter().map(ball).collect())
 }
 
@@ -233,11 +273,19 @@ fn ball(row: ArrayView1<'_, f64>) -> (Vec3, f32) {
 /// Default colour of surfaces: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
 
-fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
+fn rgb(name: &str, array: Option<ArrayView2<'_, i64>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(array) = array else { return Ok(vec![GREY; expected]) };
-    with_columns(name, &array, 3)?;
     same_length(name, array.nrows(), expected)?;
-    Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
+    let mut all = Vec::with_capacity(expected);
+    for (number, row) in array.rows().into_iter().enumerate() {
+        let mut colour = [0; 3];
+        for (part, found) in colour.iter_mut().zip(row) {
+            *part = u8::try_from(*found)
+                .map_err(|_| wrong_setting(format!("{name}, row {number}: expected 0 to 255, found {found}")))?;
+        }
+        all.push(colour);
+    }
+    Ok(all)
 }
 
 /// Scales normals to unit length, or raises an exception for a normal without direction.
@@ -286,4 +334,133 @@ fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
         *centre = (*centre - middle) * scale;
         *radius *= scale;
     }
+}
+
+/// The parts of a scene besides its arrays, as the module `pickle` stores them.
+#[derive(Serialize, Deserialize)]
+struct Rest {
+    name: String,
+    structures: Vec<StructureState>,
+    towards_light: [f32; 3],
+    ambient: f32,
+    diffuse: f32,
+    background: [u8; 3],
+    motion: HeadMotion,
+    path: Vec<[f32; 3]>,
+    warnings: Vec<String>,
+}
+
+/// A structure of a scene. Ranges are pairs of the first index and the index after the last one.
+#[derive(Serialize, Deserialize)]
+struct StructureState {
+    name: String,
+    vertices: [usize; 2],
+    triangles: [usize; 2],
+    spheres: [usize; 2],
+    moves_with_head: bool,
+    hinge: Option<HingeState>,
+    culls_back_faces: bool,
+}
+
+/// A hinge of a structure, in the units of [`Hinge`].
+#[derive(Serialize, Deserialize)]
+struct HingeState {
+    point: [f32; 3],
+    axis: [f32; 3],
+    amplitude_deg: f64,
+    period_ps: u64,
+    phase_turns: f64,
+}
+
+impl Rest {
+    fn of(scene: &scene::Scene) -> Self {
+        let lighting = scene.lighting();
+        let ends = |range: &std::ops::Range<usize>| [range.start, range.end];
+        let structures = scene.structures().iter().map(|structure| StructureState {
+            name: structure.name.clone(),
+            vertices: ends(&structure.vertices),
+            triangles: ends(&structure.triangles),
+            spheres: ends(&structure.spheres),
+            moves_with_head: structure.frame == Frame::Head,
+            hinge: structure.hinge.map(|hinge| HingeState {
+                point: hinge.point.to_array(),
+                axis: hinge.axis.to_array(),
+                amplitude_deg: hinge.amplitude_deg,
+                period_ps: hinge.period_ps,
+                phase_turns: hinge.phase_turns,
+            }),
+            culls_back_faces: structure.culls_back_faces,
+        });
+        Self {
+            name: scene.name().to_owned(),
+            structures: structures.collect(),
+            towards_light: lighting.towards_light.to_array(),
+            ambient: lighting.ambient,
+            diffuse: lighting.diffuse,
+            background: lighting.background,
+            motion: *scene.motion(),
+            path: scene.path().iter().map(|corner| corner.to_array()).collect(),
+            warnings: scene.warnings().to_vec(),
+        }
+    }
+}
+
+impl StructureState {
+    fn structure(self) -> Structure {
+        let range = |[start, end]: [usize; 2]| start..end;
+        Structure {
+            name: self.name,
+            vertices: range(self.vertices),
+            triangles: range(self.triangles),
+            spheres: range(self.spheres),
+            frame: if self.moves_with_head { Frame::Head } else { Frame::World },
+            hinge: self.hinge.map(|hinge| Hinge {
+                point: Vec3::from_array(hinge.point),
+                axis: Vec3::from_array(hinge.axis),
+                amplitude_deg: hinge.amplitude_deg,
+                period_ps: hinge.period_ps,
+                phase_turns: hinge.phase_turns,
+            }),
+            culls_back_faces: self.culls_back_faces,
+        }
+    }
+}
+
+/// Returns the scene that `Scene.__reduce__` has taken apart.
+///
+/// Raises :class:`pxpl5.SettingError` for parts that no scene has.
+#[pyfunction]
+pub(crate) fn scene_of_parts(arrays: &Bound<'_, PyDict>, rest: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    let array = |name: &str| arrays.get_item(name)?.ok_or_else(|| wrong_setting(format!("a scene: {name} is missing")));
+    let rest: Rest = depythonize(rest).map_err(wrong_setting)?;
+    let positions = points("vertices", reals2("vertices", &array("vertices")?, 3)?.as_array())?;
+    let normals = points("normals", reals2("normals", &array("normals")?, 3)?.as_array())?;
+    let colours = rgb("colours", Some(wholes2("colours", &array("colours")?, 3)?.as_array()), positions.len())?;
+    same_length("normals", normals.len(), positions.len())?;
+    let balls = balls(Some(reals2("spheres", &array("spheres")?, 4)?.as_array()))?;
+    let of_spheres = wholes2("sphere_colours", &array("sphere_colours")?, 3)?;
+    let of_spheres = rgb("sphere_colours", Some(of_spheres.as_array()), balls.len())?;
+    let corners = positions.iter().zip(&normals).zip(&colours);
+    let parts = SceneParts {
+        name: rest.name,
+        vertices: corners
+            .map(|((position, normal), colour)| Vertex { position: *position, normal: *normal, colour: *colour })
+            .collect(),
+        triangles: indices(wholes2("triangles", &array("triangles")?, 3)?.as_array(), positions.len())?,
+        spheres: balls
+            .iter()
+            .zip(&of_spheres)
+            .map(|((centre, radius), colour)| Sphere { centre: *centre, radius: *radius, colour: *colour })
+            .collect(),
+        structures: rest.structures.into_iter().map(StructureState::structure).collect(),
+        lighting: Lighting {
+            towards_light: Vec3::from_array(rest.towards_light),
+            ambient: rest.ambient,
+            diffuse: rest.diffuse,
+            background: rest.background,
+        },
+        motion: rest.motion,
+        path: rest.path.into_iter().map(Vec3::from_array).collect(),
+    };
+    Ok(Scene::of(scene::Scene::new(parts).map_err(wrong_setting)?.with_warnings(rest.warnings)))
 }

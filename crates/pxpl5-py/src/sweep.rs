@@ -4,7 +4,7 @@ use crate::attended::attended;
 use crate::catalogue::python;
 use crate::errors::{failed_sweep, wrong_setting};
 use crate::settings::Settings;
-use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep, SweepRow, run};
+use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep, SweepRow, run_stoppable};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -113,8 +113,8 @@ impl Store {
         Ok(row.point)
     }
 
-    /// Simulates all points that have no row yet, on ``threads`` threads of this computer. Ctrl-C ends the sweep when
-    /// the points in progress are finished. Their rows are in the folder.
+    /// Simulates all points that have no row yet, on ``threads`` threads of this computer. Ctrl-C ends the points in
+    /// progress, which get no row. The rows of finished points are in the folder.
     ///
     /// Raises :class:`pxpl5.SweepError` and KeyboardInterrupt.
     #[pyo3(signature = (threads, progress = None))]
@@ -125,7 +125,7 @@ impl Store {
             let of = sweep.space().points();
             let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };
-            let result = run(&sweep, &mut store, options, |_| {
+            let result = run_stoppable(&sweep, &mut store, options, &told.stop_flag(), |_| {
                 done += 1;
                 told.tell(done, of);
             });

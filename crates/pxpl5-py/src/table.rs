@@ -9,7 +9,7 @@ use arrow_schema::{DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList};
+use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple};
 use pythonize::pythonize;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -47,6 +47,10 @@ pub(crate) struct Table {
 impl Table {
     /// Creates a table from columns of equal length.
     pub(crate) fn of(columns: Vec<Column>) -> PyResult<Self> {
+        // A batch without columns needs its own constructor, because no column has the number of rows.
+        if columns.is_empty() {
+            return Ok(Self { batch: RecordBatch::new_empty(Arc::new(Schema::empty())) });
+        }
         let fields = columns.iter().map(|column| {
             let about = HashMap::from([("about".to_owned(), column.about.clone())]);
             Field::new(&column.name, column.values.data_type().clone(), true).with_metadata(about)
@@ -127,6 +131,28 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
     Table::of_rows(&rows, &about)
 }
 
+/// Returns the table that `Table.__reduce__` has taken apart: name, description, type and values of each column.
+///
+/// Raises :class:`pxpl5.SettingError` for an unknown type.
+#[pyfunction]
+pub(crate) fn table_of_columns(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -> PyResult<Table> {
+    let columns = columns.into_iter().map(|(name, about, kind, values)| {
+        let values: ArrayRef = match kind.as_str() {
+            "Int64" => Arc::new(Int64Array::from(values.extract::<Vec<Option<i64>>>()?)),
+            "Float64" => Arc::new(Float64Array::from(values.extract::<Vec<Option<f64>>>()?)),
+            "Boolean" => Arc::new(BooleanArray::from(values.extract::<Vec<Option<bool>>>()?)),
+            "Utf8" => Arc::new(StringArray::from(values.extract::<Vec<Option<String>>>()?)),
+            _ => {
+                return Err(wrong_setting(format!(
+                    "column {name}: expected the type Int64, Float64, Boolean or Utf8, found {kind}"
+                )));
+            }
+        };
+        Ok(Column { name, about, values })
+    });
+    Table::of(columns.collect::<PyResult<_>>()?)
+}
+
 #[pymethods]
 impl Table {
     /// Returns the table as an Arrow stream of one batch, for the Arrow PyCapsule interface. ``requested_schema`` is
@@ -167,7 +193,13 @@ impl Table {
     /// with None for missing values. The numbers are copied, unlike with Arrow's own readers.
     ///
     /// Raises KeyError with the existing names.
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(name) = name.extract::<&str>() else {
+            let found = name.repr()?;
+            return Err(PyKeyError::new_err(format!(
+                "expected the name of a column, found {found}; row({found}) returns a row"
+            )));
+        };
         let column = self.batch.column(self.column_index(name)?);
         // NumPy has no missing integers, so a column with missing values becomes float64.
         if let Some(whole) = column.as_any().downcast_ref::<Int64Array>() {
@@ -187,13 +219,13 @@ impl Table {
     /// Returns the row with index ``number``, from 0, as a dictionary. A missing value is None.
     ///
     /// Raises IndexError for a number beyond the last row.
-    fn row<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyDict>> {
-        if number >= self.batch.num_rows() {
-            let rows = self.batch.num_rows();
+    fn row<'py>(&self, py: Python<'py>, number: i64) -> PyResult<Bound<'py, PyDict>> {
+        let rows = self.batch.num_rows();
+        let Some(number) = usize::try_from(number).ok().filter(|number| *number < rows) else {
             return Err(pyo3::exceptions::PyIndexError::new_err(format!(
-                "expected a row below {rows}, found {number}"
+                "expected a row below {rows} and from 0, found {number}"
             )));
-        }
+        };
         let row = PyDict::new(py);
         for (name, column) in self.names().iter().zip(self.batch.columns()) {
             row.set_item(name, cell(py, column, number)?)?;
@@ -201,9 +233,74 @@ impl Table {
         Ok(row)
     }
 
+    /// Returns an iterator over all rows as dictionaries, in order.
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.rows(py)?.into_pyobject(py)?.call_method0("__iter__")
+    }
+
+    /// Returns true if the table has a column with this name.
+    fn __contains__(&self, name: &str) -> bool {
+        self.column_index(name).is_ok()
+    }
+
+    /// Creates a table from dictionaries, one for each row. Keys of nested dictionaries are joined with a point. Lists
+    /// become JSON text. ``definitions`` maps names of columns to descriptions.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for a row that is no dictionary, or a value that no column can have.
+    #[staticmethod]
+    #[pyo3(signature = (rows, definitions = None))]
+    fn from_rows<'py>(
+        py: Python<'py>,
+        rows: Bound<'py, PyAny>,
+        definitions: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        py.import("pxpl5._tables")?.call_method1("table_of", (rows, definitions))
+    }
+
+    /// Returns the table as a ``pandas.DataFrame``. Needs pandas, and pyarrow for pandas before version 3.
+    fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let frame = py.import("pandas")?.getattr("DataFrame")?;
+        match frame.getattr("from_arrow") {
+            Ok(from_arrow) => from_arrow.call1((slf,)),
+            Err(_) => py.import("pyarrow")?.call_method1("table", (slf,))?.call_method0("to_pandas"),
+        }
+    }
+
+    /// Returns the table as a ``polars.DataFrame``. Needs polars.
+    fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("polars")?.call_method1("DataFrame", (slf,))
+    }
+
+    /// Returns the table as a ``pyarrow.Table`` without a copy. The fields have the definitions as metadata ``about``.
+    /// Needs pyarrow.
+    fn to_arrow<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("pyarrow")?.call_method1("table", (slf,))
+    }
+
+    /// Writes the table as a Parquet file, with the definitions of the columns. Needs pyarrow.
+    ///
+    /// Raises OSError if the file cannot be written.
+    fn to_parquet(slf: &Bound<'_, Self>, path: std::path::PathBuf) -> PyResult<()> {
+        let parquet = slf.py().import("pyarrow.parquet")?;
+        parquet.call_method1("write_table", (Self::to_arrow(slf)?, path)).map(drop)
+    }
+
+    /// Returns the function and the arguments that make an equal table, for the module ``pickle``.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let schema = self.batch.schema();
+        let columns = schema.fields().iter().zip(self.batch.columns()).map(|(field, column)| {
+            let values = (0..column.len()).map(|row| cell(py, column, row)).collect::<PyResult<Vec<_>>>()?;
+            let about = field.metadata().get("about").cloned().unwrap_or_default();
+            Ok((field.name().clone(), about, field.data_type().to_string(), PyList::new(py, values)?))
+        });
+        let columns = PyList::new(py, columns.collect::<PyResult<Vec<_>>>()?)?;
+        Ok((py.import("pxpl5._pickle")?.getattr("table")?, (columns,).into_pyobject(py)?))
+    }
+
     /// Returns all rows as dictionaries, in order.
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        (0..self.batch.num_rows()).map(|number| self.row(py, number)).collect()
+        (0..self.batch.num_rows()).map(|number| self.row(py, number as i64)).collect()
     }
 
     /// Returns the first rows as HTML for notebooks. The definitions of the columns are tooltips.
@@ -237,7 +334,7 @@ impl Table {
 /// Greatest number of rows that a notebook shows.
 const SHOWN_ROWS: usize = 40;
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

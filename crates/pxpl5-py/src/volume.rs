@@ -1,5 +1,6 @@
 //! Scenes drawn as slices for a spinning volumetric display.
 
+use crate::arrays::Count;
 use crate::attended::attended;
 use crate::catalogue::python;
 use crate::errors::wrong_setting;
@@ -78,8 +79,8 @@ impl Volume {
     /// are 0 or 1.
     ///
     /// Raises :class:`pxpl5.SettingError` for a slice that does not exist.
-    fn bits<'py>(&self, py: Python<'py>, slice: u32) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let slice = self.volume.check_slice(slice).map_err(wrong_setting)?;
+    fn bits<'py>(&self, py: Python<'py>, slice: Count) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let slice = self.volume.check_slice(slice.small()).map_err(wrong_setting)?;
         let planes = &self.volume.frame.planes;
         let [width, height] = planes.size();
         let bits = py.detach(|| {
@@ -95,8 +96,8 @@ impl Volume {
     ///
     /// Raises :class:`pxpl5.SettingError` for a slice that does not exist.
     #[pyo3(signature = (number, *, undithered = false))]
-    fn slice(&self, py: Python<'_>, number: u32, undithered: bool) -> PyResult<Picture> {
-        let number = self.volume.check_slice(number).map_err(wrong_setting)?;
+    fn slice(&self, py: Python<'_>, number: Count, undithered: bool) -> PyResult<Picture> {
+        let number = self.volume.check_slice(number.small()).map_err(wrong_setting)?;
         let volume = &self.volume;
         let picture = py.detach(|| if undithered { coloured(volume, number) } else { halftoned(volume, number) });
         Picture::of(py, picture, Vec::new())
@@ -112,8 +113,9 @@ impl Volume {
     /// +z to +x. Azimuth and elevation are in degrees, and the picture is ``size`` pixels wide and high.
     ///
     /// Raises :class:`pxpl5.SettingError` if the eye can see nothing of the display.
-    #[pyo3(signature = (azimuth_deg = 40.0, elevation_deg = 25.0, *, size = 512))]
-    fn view(&self, py: Python<'_>, azimuth_deg: f64, elevation_deg: f64, size: u32) -> PyResult<Picture> {
+    #[pyo3(signature = (azimuth_deg = 40.0, elevation_deg = 25.0, *, size = Count(512)), text_signature = "($self, azimuth_deg=40.0, elevation_deg=25.0, *, size=512)")]
+    fn view(&self, py: Python<'_>, azimuth_deg: f64, elevation_deg: f64, size: Count) -> PyResult<Picture> {
+        let size = size.small();
         if !(1..=8192).contains(&size) {
             return Err(wrong_setting(format!("size: expected 1 to 8192 pixels, found {size}")));
         }
@@ -125,7 +127,7 @@ impl Volume {
 
     /// Returns a view of the volume as PNG data, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
-        self.view(py, 40.0, 25.0, 384)?.png(py)
+        self.view(py, 40.0, 25.0, Count(384))?.png(py)
     }
 
     /// Returns a text that states the scene and the number of slices.

@@ -82,7 +82,8 @@ pub use pipelines::faces::{
     RotationLatency, SegmentedScene, ShownUpdate,
 };
 pub use pipelines::{
-    Code, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment,
+    RegionPolicy, RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
 pub use pxpl5_wire::display::{Aim, LightTimes};
 pub use raster::Raster;

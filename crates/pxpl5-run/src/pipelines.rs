@@ -4,11 +4,13 @@
 pub(crate) mod faces;
 mod frameless;
 mod jitp;
+mod region_policy;
 mod rendering_control;
 mod slats;
 
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
+pub use region_policy::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
 pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 

@@ -81,24 +81,54 @@ impl Film {
     ///
     /// [`FilmError`]. The file is then incomplete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
-        if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
-            return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
-        }
-        // A raster that shifts its picture needs the offsets of a run without pixels.
-        let plain = self.without_pixels()?;
-        let offsets = plain.as_ref().and_then(RasterOffsets::of);
-        let mut machine = self.experiment.build()?;
+        let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
         let delay = frame_seconds(machine.record().display());
         let size = size(machine.record().display(), &surfaces);
         let mut animation = Animation::begin(out, size, self.periods as u32, delay, texts)?;
+        let add = |_, picture| animation.add(&picture).map(|()| true).map_err(FilmError::from);
+        self.each_of(&mut machine, &surfaces, add)?;
+        Ok(animation.finish()?)
+    }
+
+    /// Runs the experiment and calls `take` with the number and the picture of each period, in order. The pictures are
+    /// the frames that [`write`](Self::write) writes. The run ends early if `take` returns false.
+    ///
+    /// # Errors
+    ///
+    /// Like [`write`](Self::write), without errors of files.
+    pub fn each(&self, mut take: impl FnMut(PeriodNumber, RgbImage) -> bool) -> Result<(), FilmError> {
+        let mut machine = self.begin()?;
+        let surfaces = self.surfaces(machine.record().display())?;
+        self.each_of(&mut machine, &surfaces, |period, picture| Ok(take(period, picture)))
+    }
+
+    /// Builds the machine of the film.
+    fn begin(&self) -> Result<Machine, FilmError> {
+        if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
+            return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
+        }
+        Ok(self.experiment.build()?)
+    }
+
+    fn each_of(
+        &self,
+        machine: &mut Machine,
+        surfaces: &[SurfaceId],
+        mut take: impl FnMut(PeriodNumber, RgbImage) -> Result<bool, FilmError>,
+    ) -> Result<(), FilmError> {
+        // A raster that shifts its picture needs the offsets of a run without pixels.
+        let plain = self.without_pixels()?;
+        let offsets = plain.as_ref().and_then(RasterOffsets::of);
         for period in self.first_period.until(self.first_period.after(self.periods)) {
             // A period is over when all events at the beginning of the next one have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
-            animation.add(&frame(&machine, &surfaces, period, offsets.as_ref()))?;
+            if !take(period, frame(machine, surfaces, period, offsets.as_ref()))? {
+                break;
+            }
         }
-        Ok(animation.finish()?)
+        Ok(())
     }
 
     /// Runs the experiment for the same length without pixels, to find the raster offset in each period. Returns `None`

@@ -11,7 +11,7 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
+    Experiment, ExperimentError, FIELDS_RANGE, Host, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
     PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
@@ -366,7 +366,16 @@ impl Plan {
     ///
     /// Fails in the same cases as [`Experiment::run`].
     pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
-        let experiment = self.experiment(scene).pixels(Pixels::Off).host(Workstation::with_threads(1));
+        self.run_on(Workstation::with_threads(1), scene)
+    }
+
+    /// Like [`run`](Self::run), on another host. A host can stop the run.
+    ///
+    /// # Errors
+    ///
+    /// Like [`run`](Self::run), and [`ExperimentError::Stopped`] if the host stops the run.
+    pub fn run_on(&self, host: impl Host + 'static, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
+        let experiment = self.experiment(scene).pixels(Pixels::Off).host(host);
         match self.level {
             Level::Analytic => Ok(Results::of_closed_form(summarise(&self.registry, &experiment)?)),
             Level::Transaction | Level::Cycle => Ok(Results::of_run(experiment.run()?)),

@@ -2,13 +2,16 @@
 
 use super::header::json;
 use super::{Sweep, measures};
+use crate::Workstation;
 use crate::experiment_file::{FileError, Plan};
+use pxpl5_run::Host;
 use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Result status of a point in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -64,8 +67,18 @@ impl Sweep {
 
     /// Simulates a point and returns its row. An error, even a panic, is stored in the row.
     pub(super) fn row(&self, point: u64) -> SweepRow {
+        self.row_on(point, &Workstation::with_threads(1))
+    }
+
+    /// Simulates a point and returns its row, or `None` if another thread has set `stop` to true meanwhile.
+    pub(super) fn row_unless_stopped(&self, point: u64, stop: &Arc<AtomicBool>) -> Option<SweepRow> {
+        let row = self.row_on(point, &StoppableHost { stop: Arc::clone(stop) });
+        (!stop.load(Ordering::Relaxed)).then_some(row)
+    }
+
+    fn row_on(&self, point: u64, host: &(impl Host + Clone + 'static)) -> SweepRow {
         // A panic in one point must not end the sweep.
-        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
+        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, host.clone())));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
         // A failed row has the parameters and the error only.
@@ -90,16 +103,28 @@ impl Sweep {
         }
     }
 
-    fn simulate(&self, point: u64) -> Result<Simulated, String> {
+    fn simulate(&self, point: u64, host: impl Host + 'static) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
         let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
         // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
-        let results = plan.run(scene).map_err(|error| error.to_string())?;
+        let results = plan.run_on(host, scene).map_err(|error| error.to_string())?;
         let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
         Ok(Simulated { measured, config_hash, trace_hash })
+    }
+}
+
+/// A host with one thread for pixels, on which another thread can stop runs.
+#[derive(Clone, Debug)]
+struct StoppableHost {
+    stop: Arc<AtomicBool>,
+}
+
+impl Host for StoppableHost {
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 }
 

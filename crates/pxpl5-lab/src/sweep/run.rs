@@ -4,6 +4,7 @@ use super::points::Points;
 use super::shard::Shard;
 use super::{Store, Sweep, SweepError, SweepRow};
 use crossbeam_channel::{Sender, bounded};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
@@ -30,6 +31,22 @@ pub fn run(
     sweep: &Sweep,
     store: &mut Store,
     options: RunOptions,
+    finished: impl FnMut(&SweepRow),
+) -> Result<(), SweepError> {
+    run_stoppable(sweep, store, options, &Arc::default(), finished)
+}
+
+/// Like [`run`], and ends early when another thread sets `stop` to true. The points in progress then end within a few
+/// display periods and get no row.
+///
+/// # Errors
+///
+/// Like [`run`].
+pub fn run_stoppable(
+    sweep: &Sweep,
+    store: &mut Store,
+    options: RunOptions,
+    stop: &Arc<AtomicBool>,
     mut finished: impl FnMut(&SweepRow),
 ) -> Result<(), SweepError> {
     let work = Work {
@@ -37,7 +54,8 @@ pub fn run(
         shard: options.shard,
         finished: store.held(),
         next: AtomicU64::new(0),
-        stop: AtomicBool::new(false),
+        ended: AtomicBool::new(false),
+        stop,
     };
     let (sender, rows) = bounded(WAITING_ROWS);
     // Workers send rows to this thread, which owns the store.
@@ -54,7 +72,7 @@ pub fn run(
             finished(&row);
             Ok(())
         });
-        work.stop.store(true, Ordering::Relaxed);
+        work.ended.store(true, Ordering::Relaxed);
         drop(rows);
         result
     })
@@ -68,16 +86,20 @@ struct Work<'a> {
     finished: Points,
     /// Index of the next point to take.
     next: AtomicU64,
-    stop: AtomicBool,
+    /// True after an error of the store, when no row can be stored any more.
+    ended: AtomicBool,
+    /// True when another thread has asked the sweep to stop.
+    stop: &'a Arc<AtomicBool>,
 }
 
 impl Work<'_> {
     /// Simulates points on one thread, until no point is left or the receiver of the rows has closed.
     fn run(&self, rows: Sender<(SweepRow, f64)>) {
-        while !self.stop.load(Ordering::Relaxed) {
+        while !self.ended.load(Ordering::Relaxed) && !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
             let begin = Instant::now();
-            let row = self.sweep.row(point);
+            // A point that was stopped has no row.
+            let Some(row) = self.sweep.row_unless_stopped(point, self.stop) else { break };
             if rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
                 break;
             }

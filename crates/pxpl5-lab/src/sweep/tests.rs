@@ -2,6 +2,8 @@ use super::*;
 use crate::experiment_file::ExperimentFile;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const BASE: &str =
     "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 10\nmeasure = [\"latency_ms.mean\", \"last_copy_ms\"]\n";
@@ -294,4 +296,30 @@ fn a_sweep_whose_model_was_edited_is_another_one() {
         assert_ne!(before, hash_of(text), "{text}");
     }
     let _ = std::fs::remove_dir_all(&place);
+}
+
+#[test]
+fn a_stopped_sweep_keeps_its_finished_rows_and_continues_to_the_same_rows() {
+    let sweep = sweep("[sweep.grid]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]\n");
+    let open = |name: &str| Store::open(&folder(name), sweep.header().expect("valid"), true).expect("a folder");
+    let mut whole = open("not-stopped");
+    all(&sweep, &mut whole);
+    // A sweep that was stopped before it began has no row.
+    let mut store = open("stopped");
+    let stop = Arc::new(AtomicBool::new(true));
+    let options = RunOptions { shard: Shard::ALL, threads: 1 };
+    run_stoppable(&sweep, &mut store, options, &stop, |_| {}).expect("it stops");
+    assert_eq!(store.finished(Shard::ALL), 0);
+    // A stop after the second row leaves rows without a result. No row says that its run was stopped.
+    stop.store(false, Ordering::Relaxed);
+    let mut rows_before = 0;
+    run_stoppable(&sweep, &mut store, options, &stop, |row| {
+        assert!(row.is_done(), "{:?}", row.error);
+        rows_before += 1;
+        stop.store(rows_before >= 2, Ordering::Relaxed);
+    })
+    .expect("it stops");
+    assert!(rows_before >= 2 && store.finished(Shard::ALL) == rows_before);
+    all(&sweep, &mut store);
+    assert_eq!(rows(&store, 8), rows(&whole, 8));
 }

@@ -1,0 +1,109 @@
+//! All pictures of a run, one for each display period, as an iterator.
+
+use crate::attended::{Progress, STACK_BYTES};
+use crate::errors::{failed_run, wrong_setting};
+use crate::functions::PythonFunctions;
+use crate::picture::Picture;
+use crate::stepper::wait;
+use image::RgbImage;
+use pxpl5::ExperimentError;
+use pxpl5::views::{Film, FilmError};
+use pyo3::prelude::*;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Greatest number of pictures that are computed before Python takes them.
+const WAITING: usize = 4;
+
+/// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
+#[pyclass(frozen, module = "pxpl5._native")]
+pub(crate) struct Frames {
+    pictures: Mutex<Option<Receiver<Result<RgbImage, FilmError>>>>,
+    progress: Arc<Progress>,
+    checks: PythonFunctions,
+}
+
+impl Frames {
+    /// Starts the run of a film.
+    pub(crate) fn start(film: Film, progress: Arc<Progress>, checks: PythonFunctions) -> PyResult<Self> {
+        let (sender, pictures) = sync_channel(WAITING);
+        let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);
+        let started = thread.spawn(move || {
+            // The run ends when the receiver of the pictures has gone.
+            let result = film.each(|_, picture| sender.send(Ok(picture)).is_ok());
+            if let Err(error) = result {
+                let _ = sender.send(Err(error));
+            }
+        });
+        started.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+        Ok(Self { pictures: Mutex::new(Some(pictures)), progress, checks })
+    }
+}
+
+#[pymethods]
+impl Frames {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    /// Returns the next picture, or ends the iteration.
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Picture>> {
+        let Some(pictures) = self.pictures.lock().unwrap_or_else(PoisonError::into_inner).take() else {
+            return Ok(None);
+        };
+        let mut pictures = pictures;
+        loop {
+            match py.detach(|| next(&mut pictures)) {
+                Ok(Ok(picture)) => {
+                    *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = Some(pictures);
+                    return Picture::of(py, picture, Vec::new()).map(Some);
+                }
+                Ok(Err(error)) => {
+                    self.checks.check()?;
+                    return Err(exception(error));
+                }
+                // Ctrl-C drops the receiver, which ends the run.
+                Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| self.progress.stop())?,
+                Err(RecvTimeoutError::Disconnected) => {
+                    self.checks.check()?;
+                    return Ok(None);
+                }
+            }
+        }
+    }
+}
+
+// The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
+fn next<T>(pictures: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
+    pictures.recv_timeout(Duration::from_millis(50))
+}
+
+/// Writes a film on a separate thread and returns its bytes (animated PNG).
+pub(crate) fn film_bytes(
+    py: Python<'_>,
+    film: Film,
+    texts: Vec<(String, String)>,
+    progress: &Arc<Progress>,
+    checks: &PythonFunctions,
+) -> PyResult<Vec<u8>> {
+    let (sender, result) = sync_channel(1);
+    let thread = std::thread::Builder::new().name("pxpl5-film".to_owned()).stack_size(STACK_BYTES);
+    let started = thread.spawn(move || {
+        let texts: Vec<(&str, String)> = texts.iter().map(|(key, text)| (key.as_str(), text.clone())).collect();
+        let mut bytes = Vec::new();
+        let _ = sender.send(film.write(&texts, &mut bytes).map(|()| bytes));
+    });
+    started.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+    let result = wait(py, result, &progress.stop_flag());
+    checks.check()?;
+    result?.map_err(exception)
+}
+
+/// Converts an error of a film to an exception.
+fn exception(error: FilmError) -> PyErr {
+    match error {
+        FilmError::Run(_) | FilmError::Experiment(ExperimentError::Run { .. }) => failed_run(error),
+        error => wrong_setting(error),
+    }
+}

@@ -1,0 +1,328 @@
+//! A pipeline in which a function of the user, the *policy*, decides which renderer draws which region, and in which
+//! order.
+//!
+//! One graphics processor draws frames for a single eye and shows each frame as soon as it is finished. TRANSFORM ends
+//! before the policy is called, so the policy knows the number of primitives in every region.
+
+use crate::keys::KeyValue;
+use crate::picture_ends::PictureResult;
+use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::{Fault, Gp, Priority, Stage};
+use pxpl5_machine::{ConfigError, Machine, Ports, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{
+    Body, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PictureNumber, RegionId, ViewNumber,
+    swap_request,
+};
+use std::fmt::Debug;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// A frame after TRANSFORM, as a policy receives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PolicyFrame {
+    /// Number of the frame, counted from 0.
+    pub frame: PictureNumber,
+    /// Simulated time at which the policy is called.
+    pub time: Time,
+    /// Number of regions in a row of the screen.
+    pub columns: u32,
+    /// Number of primitives in the bin of each region, row by row.
+    pub primitives: Vec<u32>,
+    /// Number of renderers in the machine.
+    pub renderers: usize,
+}
+
+/// The decision of a policy for one region: the region, and the index of the renderer that draws the region.
+pub type RegionAssignment = (RegionId, usize);
+
+/// A function that assigns the regions of a frame to renderers.
+///
+/// ```
+/// use pxpl5_run::{PolicyFrame, RegionAssignment, RegionPolicy};
+/// use pxpl5_wire::RegionId;
+///
+/// /// Draws region after region, with one renderer after the other.
+/// #[derive(Debug)]
+/// struct InTurn;
+///
+/// impl RegionPolicy for InTurn {
+///     fn name(&self) -> &str {
+///         "in-turn"
+///     }
+///
+///     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>> {
+///         let regions = 0..frame.primitives.len() as u16;
+///         Some(regions.map(|region| (RegionId(region), usize::from(region) % frame.renderers)).collect())
+///     }
+/// }
+/// ```
+pub trait RegionPolicy: Debug + Send + Sync {
+    /// Returns the name of the policy. The hash of an experiment's settings covers the name.
+    fn name(&self) -> &str;
+
+    /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end
+    /// the drawing; the run then continues without further pictures.
+    ///
+    /// The same frame must always get the same answer, because a run may be repeated: to detect a deadlock, or as the
+    /// dry run of a predicted head.
+    fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>>;
+}
+
+/// An answer of a policy that does not assign every region once to an existing renderer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum PolicyError {
+    /// The answer contains an unknown or repeated region, or an unknown renderer.
+    #[error(
+        "a policy: expected each of {regions} regions once, for one of {renderers} renderers, found ({region}, {renderer})"
+    )]
+    Assignment {
+        /// Number of regions of the frame.
+        regions: usize,
+        /// Number of renderers in the machine.
+        renderers: usize,
+        /// Region in the answer.
+        region: u16,
+        /// Renderer in the answer.
+        renderer: usize,
+    },
+    /// The answer lacks a region.
+    #[error("a policy: expected all {regions} regions, found none for region {missing}")]
+    Missing {
+        /// Number of regions of the frame.
+        regions: usize,
+        /// First region without a renderer.
+        missing: usize,
+    },
+}
+
+impl PolicyFrame {
+    /// Checks that the assignments contain every region exactly once and only existing renderers.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`PolicyError`] with the first wrong assignment.
+    pub fn check(&self, assignments: &[RegionAssignment]) -> Result<(), PolicyError> {
+        let (regions, renderers) = (self.primitives.len(), self.renderers);
+        let mut seen = vec![false; regions];
+        for &(RegionId(region), renderer) in assignments {
+            // An unknown region, a repeated region and an unknown renderer are errors.
+            let known = seen.get_mut(usize::from(region)).filter(|seen| !**seen && renderer < renderers);
+            let Some(known) = known else {
+                return Err(PolicyError::Assignment { regions, renderers, region, renderer });
+            };
+            *known = true;
+        }
+        match seen.iter().position(|seen| !seen) {
+            Some(missing) => Err(PolicyError::Missing { regions, missing }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A pipeline with one graphics processor, which draws one frame at a time. A [`RegionPolicy`] distributes the regions
+/// over the renderers.
+#[derive(Clone, Debug)]
+pub struct PolicyPipeline {
+    policy: Arc<dyn RegionPolicy>,
+    shading: Shading,
+}
+
+impl PolicyPipeline {
+    /// Creates a pipeline with a policy and a kind of shading.
+    #[must_use]
+    pub const fn new(policy: Arc<dyn RegionPolicy>, shading: Shading) -> Self {
+        Self { policy, shading }
+    }
+
+    const fn picture(&self) -> Picture {
+        Picture {
+            viewport: Viewport::FRAME,
+            shading: self.shading,
+            binning: RegionBinning::Touched,
+            layout: Layout::rendering_control_phong(),
+            pixels: true,
+        }
+    }
+}
+
+/// Everything that the firmware needs to draw a frame.
+struct Drawing {
+    ports: Ports,
+    list: Arc<DisplayList>,
+    picture: Picture,
+    policy: Arc<dyn RegionPolicy>,
+}
+
+impl Drawing {
+    /// Calls the policy for a frame. Returns `None` if the policy ends the drawing.
+    fn assignments(
+        &self,
+        gp: &Gp,
+        frame: PictureNumber,
+        pass: &Pass,
+    ) -> Result<Option<Vec<RegionAssignment>>, PolicyError> {
+        let grid = self.picture.viewport.grid();
+        let regions = grid.regions() as u16;
+        let about = PolicyFrame {
+            frame,
+            time: gp.now(),
+            columns: grid.width.div_ceil(grid.region_width),
+            primitives: (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect(),
+            renderers: self.ports.renderers.len(),
+        };
+        let Some(assignments) = self.policy.assign(&about) else { return Ok(None) };
+        about.check(&assignments)?;
+        Ok(Some(assignments))
+    }
+}
+
+async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Time) -> FrameView) -> Result<(), Fault> {
+    let share = Share::new(Arc::clone(&drawing.list), 0, 1);
+    let picture = drawing.picture;
+    let frame_buffer = drawing.ports.display()[0];
+    for frame in PictureNumber::FIRST.onwards() {
+        gp.begin(Stage::Sample, frame, None);
+        gp.begin(Stage::Transform, frame, None);
+        let view = view(ViewNumber::taken_for(frame), gp.now());
+        let pass = share.transform(&view, 0, picture);
+        let counts = share.counts();
+        // TRANSFORM takes the times that the table has for triangles and bin entries.
+        gp.spend(Span::from_ns(gp.timing().triangle_ns) * u64::from(counts.triangles)).await;
+        gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
+        gp.end(Stage::Transform, frame, None);
+        // A policy that returns nothing ends the drawing. A wrong answer is a fault of the program.
+        let answer = drawing.assignments(&gp, frame, &pass);
+        let answer = answer.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
+        let Some(assignments) = answer else { return Ok(()) };
+        let buffer = (frame.next().0 % 2) as u8;
+        gp.begin(Stage::Render, frame, None);
+        // Send each region to its renderer. The last message of a region contains the copy command.
+        for (region, renderer) in &assignments {
+            let envelope = envelope(&gp, &picture, (frame_buffer, buffer), *region, frame);
+            for message in region_messages(&pass, *region, 0, envelope) {
+                gp.clump_buffer_free().await;
+                gp.send(drawing.ports.renderers[*renderer], message.words(), Body::Commands(message)).await;
+            }
+        }
+        gp.end(Stage::Render, frame, None);
+        // Wait until every copy is acknowledged, then until the frame buffers are swapped.
+        for _ in &assignments {
+            gp.receive().await;
+        }
+        let request = gp.send(frame_buffer, 2, Body::Words(swap_request(buffer))).await;
+        gp.accepted(request).await;
+        gp.until("the swap", || (gp.status(frame_buffer) > frame.0).then_some(())).await;
+    }
+    Ok(())
+}
+
+fn envelope(
+    gp: &Gp,
+    picture: &Picture,
+    (frame_buffer, buffer): (NodeId, u8),
+    region: RegionId,
+    frame: PictureNumber,
+) -> RegionEnvelope {
+    let grid = picture.viewport.grid();
+    let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
+    let acknowledge = Some(gp.node());
+    let copy =
+        CopyOrder { target, context: 0, way: CopyPath::ThroughBacking, acknowledge, content: CopyContent::Colour };
+    RegionEnvelope { begin: true, shade: true, copy: Some(copy) }
+}
+
+impl Pipeline for PolicyPipeline {
+    fn name(&self) -> &'static str {
+        "region-policy"
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        let shading = if self.shading == Shading::Phong { "phong" } else { "gouraud" };
+        // A key has a name of this program or a number, so a number stands for the policy's name.
+        let digits = crate::Fingerprint::of(self.policy.name().as_bytes()).to_string();
+        let number = digits.get(..15).and_then(|digits| u64::from_str_radix(digits, 16).ok());
+        vec![("shading", KeyValue::Name(shading)), ("policy", KeyValue::Whole(number.unwrap_or_default()))]
+    }
+
+    fn eyes(&self) -> usize {
+        1
+    }
+
+    fn layout(&self) -> Layout {
+        self.picture().layout
+    }
+
+    fn shading(&self) -> Shading {
+        self.shading
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let ports = machine.ports().clone();
+        let views = Arc::clone(&setup.views);
+        let node = ports.gps[0];
+        let gp = machine.processor(node, Priority::Foreground);
+        let picture = Picture { pixels: setup.pixels, ..self.picture() };
+        let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
+        let program = firmware(gp, drawing, move |number, time| views(number, time));
+        machine.load(node, Priority::Foreground, Box::pin(program));
+        Ok(())
+    }
+
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let shown = record.observation().frames(1).into_values();
+        let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
+        let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
+            picture: mark.picture,
+            view: ViewNumber::taken_for(mark.picture),
+            sampled_at: Some(mark.time),
+            transform_at: mark.time,
+            copied_at: None,
+            shown_at: record.tick(tick),
+            end: PictureResult::Shown,
+        });
+        times.filter(|times| times.shown_at < end).collect()
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        "from the start of TRANSFORM to the retrace at which the frame is swapped in"
+    }
+
+    fn due_definition(&self) -> &'static str {
+        "no frame is ever due: each is shown when it is finished"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> PolicyFrame {
+        PolicyFrame {
+            frame: PictureNumber::FIRST,
+            time: Time::ZERO,
+            columns: 2,
+            primitives: vec![12, 0, 3],
+            renderers: 2,
+        }
+    }
+
+    #[test]
+    fn an_answer_has_every_region_once_on_a_renderer_that_exists() {
+        let answer = |pairs: &[(u16, usize)]| -> Vec<RegionAssignment> {
+            pairs.iter().map(|(region, renderer)| (RegionId(*region), *renderer)).collect()
+        };
+        assert_eq!(frame().check(&answer(&[(2, 0), (0, 1), (1, 1)])), Ok(()));
+        let missing = Err(PolicyError::Missing { regions: 3, missing: 1 });
+        assert_eq!(frame().check(&answer(&[(2, 0), (0, 1)])), missing);
+        for (wrong, region, renderer) in [([(0, 0), (0, 1)], 0, 1), ([(0, 0), (3, 1)], 3, 1), ([(0, 0), (1, 2)], 1, 2)]
+        {
+            let expected = Err(PolicyError::Assignment { regions: 3, renderers: 2, region, renderer });
+            assert_eq!(frame().check(&answer(&wrong)), expected);
+        }
+    }
+}

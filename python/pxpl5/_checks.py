@@ -1,0 +1,58 @@
+"""Checks of arguments, with error messages that name the argument."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from operator import index
+from typing import ClassVar
+
+from ._errors import SettingError, UnknownNameError
+
+
+def whole(name: str, value: object, low: int = 0) -> int:
+    """Returns an argument as an integer; raises :class:`SettingError` for another type or a number below ``low``."""
+    try:
+        number = index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise SettingError(f"{name}: expected a whole number, found {value!r}") from None
+    if isinstance(value, bool) or number < low:
+        raise SettingError(f"{name}: expected a whole number of {low} or more, found {value!r}")
+    return number
+
+
+def optional(name: str, value: object, low: int = 0) -> int | None:
+    """Returns an argument as an integer, or None; raises as :func:`whole`."""
+    return None if value is None else whole(name, value, low)
+
+
+def names(name: str, value: str | Iterable[str]) -> list[str]:
+    """Returns an argument as a list of names. A single text is one name; raises :class:`SettingError` for other types."""
+    all_names = [value] if isinstance(value, str) else list(value)
+    for entry in all_names:
+        if not isinstance(entry, str):
+            raise SettingError(f"{name}: expected names, found {entry!r}")
+    return all_names
+
+
+def choice(name: str, value: object, expected: Iterable[str]) -> str:
+    """Returns an argument that is one of some names; raises :class:`SettingError` with all of them."""
+    known = list(expected)
+    if isinstance(value, str) and value in known:
+        return value
+    raise SettingError(f"{name}: expected {' or '.join(known)}, found {value!r}")
+
+
+class Strict:
+    """Base of classes whose objects refuse new attributes, so that a misspelled attribute does not go unnoticed."""
+
+    #: Names of public attributes that objects have besides the properties of their class.
+    _fields: ClassVar[tuple[str, ...]] = ()
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_") and name not in self._fields and not hasattr(type(self), name):
+            known = [entry for entry in (*dir(type(self)), *self._fields) if not entry.startswith("_")]
+            nearest = get_close_matches(name, known, 1, 0.0)
+            advice = f"; did you mean {nearest[0]}?" if nearest else ""
+            raise UnknownNameError(f"{type(self).__name__} has no attribute {name}{advice}")
+        object.__setattr__(self, name, value)

@@ -1,0 +1,43 @@
+"""Functions by which the module pickle makes objects of the native module again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+
+#: Name, description, type and values of a column.
+Column = tuple[str, str, str, list[object]]
+
+
+def scene(arrays: dict[str, NDArray[np.generic]], rest: dict[str, object]) -> _native.Scene:
+    """Returns the scene with these arrays and other parts."""
+    return _native.scene_of_parts(arrays, rest)
+
+
+def recording(text: bytes, columns: Mapping[str, str], end: str | None, about: str) -> _native.Motion:
+    """Returns the motion of a recording's text."""
+    return _native.motion_of_text(text, columns, end, about)
+
+
+def named_motion(name: str) -> _native.Motion:
+    """Returns the motion with a name."""
+    return _native.Motion(name)
+
+
+def callable_motion(pose: Callable[[float], Sequence[float]], name: str) -> _native.Motion:
+    """Returns the motion of a Python function."""
+    return _native.Motion.from_callable(pose, name=name)
+
+
+def picture(pixels: NDArray[np.uint8], texts: list[tuple[str, str]]) -> _native.Picture:
+    """Returns the picture with these pixels and texts."""
+    return _native.picture_of_parts(pixels, texts)
+
+
+def table(columns: list[Column]) -> _native.Table:
+    """Returns the table with these columns."""
+    return _native.table_of_columns(columns)

@@ -1,0 +1,128 @@
+"""Spaces of settings, at whose points a sweep runs an experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+from . import _native
+from ._checks import Strict, whole
+from ._machine import Machine
+from ._toml import toml_of
+
+
+@dataclass(frozen=True)
+class Range:
+    """Whole numbers from ``start`` to ``stop``, both included, in steps."""
+
+    #: The first.
+    start: int
+    #: The last, if a step meets it.
+    stop: int
+    #: From one to the next, above 0.
+    step: int = 1
+
+
+class SweepSpace(Strict):
+    """A space of settings: what all points share, and the axes along which they differ.
+
+    - ``base``: keys of an experiment with their values, such as ``{"pipeline": "slats", "scene": "mig"}``; a :class:`Machine` under
+      ``machine`` stands for its preset and its changes.
+    - ``grid``: keys with the values that they take, lists or :class:`Range`: all combinations, the
+      last key in the order of the alphabet fastest.
+    - ``together``: keys that change in step, lists of one length.
+    - ``seeds``: so many seeds from 1 on for every point.
+
+    Raises :class:`SettingError` for a space that makes no sense.
+    """
+
+    _fields = ("text",)
+
+    def __init__(
+        self,
+        base: Mapping[str, object],
+        grid: Mapping[str, Sequence[object] | Range] | None = None,
+        *,
+        together: Mapping[str, Sequence[object] | Range] | None = None,
+        seeds: int | None = None,
+    ) -> None:
+        lines = [f"{_key(path)} = {toml_of(value)}" for path, value in _flat(base)]
+        lines.append("[sweep]")
+        if seeds is not None:
+            lines.append(f"seeds = {whole('seeds', seeds, 1)}")
+        for name, axes in (("grid", grid), ("together", together)):
+            if axes:
+                lines.append(f"[sweep.{name}]")
+                lines += [f"{_key(path)} = {_axis(values)}" for path, values in axes.items()]
+        self._take("\n".join(lines) + "\n", Path())
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str]) -> SweepSpace:
+        """The space of an experiment file with a table ``sweep``, as ``pxpl5 sweep FILE`` takes it.
+
+        Raises :class:`SettingError` with the file and the line.
+        """
+        space = cls.__new__(cls)
+        space._take(Path(path).read_text(encoding="utf-8"), Path(path).absolute())
+        return space
+
+    def _take(self, text: str, path: Path) -> None:
+        #: The text of an experiment file that says the same.
+        self.text = text
+        self._path = path
+        self._native = sweep_of_text(text, fspath(path))
+
+    @property
+    def points(self) -> int:
+        """How many points there are."""
+        return self._native.points
+
+    def header(self) -> dict[str, Any]:
+        """What all rows have in common: schema, version, machine, quantities with their definitions, axes.
+
+        Raises :class:`SettingError` when no point is an experiment.
+        """
+        return self._native.header()
+
+    def costs(self, points: Sequence[int]) -> list[float]:
+        """About how many seconds each of some points will take on one core, by the analytic level."""
+        return self._native.costs([whole("points", point) for point in points])
+
+    def __repr__(self) -> str:
+        return f"<pxpl5.SweepSpace of {self.points} points>"
+
+
+def _flat(base: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    for path, value in base.items():
+        if isinstance(value, Machine):
+            yield "machine.preset", value.preset
+            yield from ((f"machine.{number}", setting) for number, setting in value.changes.items())
+        elif path == "measure" and isinstance(value, str):
+            yield path, [value]
+        elif path == "machine" and isinstance(value, str):
+            yield "machine.preset", value
+        else:
+            yield path, value
+
+
+def _key(path: str) -> str:
+    return ".".join(part if part.replace("_", "").isalnum() else f'"{part}"' for part in path.split("."))
+
+
+def _axis(values: Sequence[object] | Range) -> str:
+    if isinstance(values, Range):
+        return f"{{ from = {values.start}, to = {values.stop}, step = {values.step} }}"
+    return toml_of(list(values))
+
+
+def sweep_of_text(text: str, path: str) -> _native.Sweep:
+    """Returns the sweep of a text; names of files in it are relative to the folder of ``path``, if it is the path of a file."""
+    settings = _native.Settings()
+    if path in ("", "."):
+        settings.parse(text, "space")
+    else:
+        settings.load(Path(path))
+    return _native.Sweep(settings)

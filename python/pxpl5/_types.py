@@ -1,0 +1,181 @@
+"""Types of dictionaries that the native module gives."""
+
+from __future__ import annotations
+
+from typing import Any, TypedDict
+
+
+class PolicyFrame(TypedDict):
+    """A frame as a policy gets it, after TRANSFORM."""
+
+    #: Number of the frame, from 0.
+    frame: int
+    #: Simulated seconds.
+    time_s: float
+    #: Regions in a row of the screen.
+    columns: int
+    #: Number of primitives in the bin of each region, row by row.
+    primitives: list[int]
+    #: Number of renderers in the machine.
+    renderers: int
+
+
+class EventState(TypedDict):
+    """An event of the simulation."""
+
+    #: Picoseconds of simulated time.
+    time_ps: int
+    #: Board that handles the event.
+    board: str
+    #: Description of the event.
+    what: str
+
+
+#: State of a processor or renderer, by name.
+BoardState = dict[str, Any]
+
+
+class SharesData(TypedDict):
+    """Shares of time, 0 to 1, of the boards of one kind."""
+
+    #: Mean over all boards.
+    mean: float
+    #: Share of the busiest board.
+    max: float
+    #: Number of the busiest board, from 0.
+    busiest: int
+    #: Number of boards that were busy for less than 1 % of the time.
+    idle: int
+
+
+class GpData(TypedDict):
+    """Shares of CPU time of the graphics processors."""
+
+    busy: SharesData
+    work: float
+    messages: float
+    tokens: float
+
+
+class RendererData(TypedDict):
+    """Shares of time of the renderers' controllers."""
+
+    executing: SharesData
+    copying: float
+    waiting: float
+
+
+class RingData(TypedDict):
+    """Share of the ring's channels, and words a second."""
+
+    channels: SharesData
+    words_per_second: float
+    capacity: float
+
+
+class PortData(TypedDict):
+    """Share of one port of a display."""
+
+    port: str
+    busy: float
+
+
+class PortsData(TypedDict):
+    """Shares of the ring ports of displays."""
+
+    busy: SharesData
+    each: list[PortData]
+
+
+class UtilisationData(TypedDict):
+    """Shares of time, 0 to 1, in which boards were busy."""
+
+    of_ms: float
+    host: float
+    gps: GpData
+    renderers: RendererData
+    ring: RingData
+    ports: PortsData
+
+
+class PathPartData(TypedDict):
+    """Share of a latency in which a picture waits for one resource."""
+
+    resource: str
+    share: float
+    ms: float
+    board: str | None
+    share_of_board: float | None
+
+
+class CriticalPathData(TypedDict):
+    """Chain of waits of the last complete pictures."""
+
+    pictures: int
+    latency_ms: float
+    parts: list[PathPartData]
+    limited_by: str
+    chain: list[str]
+
+
+#: Effect of more of one resource: values without and with the change.
+WhatIfData = TypedDict(
+    "WhatIfData",
+    {
+        "resource": str,
+        "key": str,
+        "from": int,
+        "to": int,
+        "latency_ms": list[float | None],
+        "updates_hz": list[float | None],
+        "level": str,
+    },
+)
+
+
+class ChangedData(TypedDict):
+    """A value that differs between two reports."""
+
+    key: str
+    a: object
+    b: object
+    percent: float | None
+
+
+class DiffData(TypedDict):
+    """Differences between two reports."""
+
+    same_trace: bool
+    settings: list[ChangedData]
+    results: list[ChangedData]
+    equal: int
+
+
+class RigLatencyData(TypedDict):
+    """A latency over the passes of the pendulum, milliseconds."""
+
+    n: int
+    mean_ms: float
+    sd_ms: float | None
+    min_ms: float
+    max_ms: float
+
+
+class RigSideData(TypedDict):
+    """Tracking, rendering and total latency, from outside or from inside."""
+
+    tracking: RigLatencyData
+    rendering: RigLatencyData
+    total: RigLatencyData
+
+
+class RigData(TypedDict):
+    """A measurement with the pendulum rig."""
+
+    outside: RigSideData
+    inside: RigSideData
+    outside_less_inside_ms: float
+    tracking_bound_ms: float
+    rendering_bound_ms: float
+    rendering_early_ms: float
+    agrees: bool
