@@ -233,7 +233,7 @@ pub use pxpl5_run::{DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion
 pub use pxpl5_run::{Cause, Fingerprint};
 
 /// ```
-/// use pxpl5::firmware::RegionId;
+/// use pxpl5::firmware::{RegionId, Shading};
 /// use pxpl5::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, prelude::*};
 ///
 /// /// Draws region after region, with one renderer after the other.
@@ -251,7 +251,7 @@ pub use pxpl5_run::{Cause, Fingerprint};
 ///     }
 /// }
 ///
-/// let pipeline = PolicyPipeline::new(std::sync::Arc::new(InTurn));
+/// let pipeline = PolicyPipeline::new(std::sync::Arc::new(InTurn), Shading::Gouraud);
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
 /// assert!(experiment.run()?.latency().is_some());
