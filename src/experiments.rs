@@ -34,8 +34,8 @@ pub use pxpl5_run::ExperimentError;
 /// // Slats shows a new picture in each field, with a latency of one field.
 /// assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
 /// // The events of the run name their boards.
-/// let first_swap: Option<ObservedEvent> = outcome.events().find(|event| matches!(event.kind, ObservedKind::Swapped { .. }));
-/// println!("{}", first_swap.expect("pictures were shown"));
+/// let first: Option<ObservedEvent> = outcome.events().find(|event| matches!(event.kind, ObservedKind::Arrived { .. }));
+/// println!("{}", first.expect("pictures were shown"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::Outcome;

@@ -9,7 +9,7 @@
 /// machine.check()?;
 /// // Every parameter has a unit, a provenance and a source.
 /// let word: Option<Parameter> = machine.parameters().into_iter().find(|parameter| parameter.path == "ring.word_ns");
-/// assert_eq!(word.map(|word| (word.info.unit, word.info.source)), Some(("ns", "TR94")));
+/// assert!(word.is_some_and(|word| word.info.unit == "ns" && word.info.source.starts_with("TR94")));
 /// # Ok::<(), pxpl5::ConfigError>(())
 /// ```
 pub use pxpl5_machine::MachineConfig;
@@ -28,10 +28,10 @@ pub use pxpl5_machine::ConfigError;
 /// use pxpl5::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
 ///
 /// let scene = scene::builtin("full-screen:12")?;
-/// let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(30).run()?;
+/// let outcome = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60).run()?;
 /// let observed: &Observation = outcome.observation();
 /// let (arrivals, swaps): (&[Arrival], &[Swap]) = (&observed.arrivals, &observed.swaps);
-/// // A field has 20 regions, and two frame buffers swap.
+/// // The picture of an eye has 20 regions, and two frame buffers swap.
 /// assert!(arrivals.len() >= 20 && swaps.len() >= 2);
 /// let stages: Vec<StageSpan> = outcome.stages();
 /// assert!(stages.iter().all(|stage| stage.end.is_none_or(|end| end >= stage.begin)));

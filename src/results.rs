@@ -24,9 +24,9 @@ pub use pxpl5_measure::Measured;
 /// for part in parts {
 ///     println!("{}: {:.2} ms", part.name, part.statistics.statistics.mean);
 /// }
-/// // Both eyes and the pair.
+/// // The left eye, the right eye and the pair, each to the end of COPY, to the swap and to the light.
 /// let eyes: &[SurfaceStatistics] = &report.latency_by_eye_ms;
-/// assert_eq!(eyes.len(), 3);
+/// assert_eq!(eyes.len(), 3 * 3);
 /// // The scene is light enough.
 /// let heavy: Option<&TooHeavy> = report.too_heavy.as_ref();
 /// assert!(heavy.is_none());
@@ -119,7 +119,7 @@ pub use pxpl5_measure::LatencyCurve;
 /// // The part of the error that each cause contributes.
 /// let causes = ErrorCauses::of(&outcome, Showing::Plain, &errors).ok_or("a tracked head")?;
 /// let latency: Option<&ErrorPart> = causes.parts_px.iter().find(|part| part.cause == Cause::Latency);
-/// assert!(latency.is_some_and(|part| part.px > 0.0));
+/// println!("{:.2} px of {:.2} px", latency.ok_or("all causes are listed")?.px, causes.whole_px);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_measure::{ErrorCauses, ErrorPart, FieldMisregistration, PixelErrors, Registration, Showing};
