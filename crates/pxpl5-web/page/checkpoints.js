@@ -13,8 +13,9 @@ const LIMITS = {
   every: 1e12,
   /** Milliseconds of computing after which a checkpoint is due too, so that slow machines also go back soon. */
   work: 500,
-  /** Most bytes of the pages of older checkpoints together. The newest checkpoint needs as many bytes as the memory. */
-  bytes: 96e6,
+  /** Most bytes of the pages of older checkpoints together, except that one older checkpoint always stays. The newest checkpoint
+   *  needs as many bytes as the memory. */
+  bytes: 160e6,
   /** Most checkpoints. */
   count: 64,
   /** Most bytes that can be lost. After a return to a time when the memory was smaller, the allocator cannot use the rest. */
@@ -71,13 +72,14 @@ export class Checkpoints {
     return true;
   }
 
-  /** Removes checkpoints until the limits hold: those that lie closest together, relative to their age. Recent ones stay dense. */
+  /** Removes checkpoints until the limits hold: those that lie closest together, relative to their age. Recent ones stay dense. Of
+   *  three checkpoints the oldest is removed, because building the machines again also leads to the start. */
   thin(now) {
     const { bytes, count, every } = this.limits;
-    while (this.all.length > 1 && (this.all.length > count || this.bytes > bytes)) {
+    while (this.all.length > 2 && (this.all.length > count || this.bytes > bytes)) {
       const gap = (n) => (this.all[n + 1].at - this.all[n - 1].at) / (now - this.all[n - 1].at + every);
       let closest = 0;
-      for (let n = 1; n < this.all.length - 1; n += 1) if (closest === 0 || gap(n) < gap(closest)) closest = n;
+      if (this.all.length > 3) for (let n = 1; n < this.all.length - 1; n += 1) if (closest === 0 || gap(n) < gap(closest)) closest = n;
       const [gone] = this.all.splice(closest, 1);
       if (closest === 0) continue;
       // The checkpoint before is reached across the one that is gone.
