@@ -22,7 +22,10 @@ pub struct FileKey {
 /// Keys that exist whatever pipelines and displays the registry contains.
 const COMMON: &[(&str, &str)] = &[
     ("title", "a line for people"),
-    ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
+    (
+        "scene",
+        "a built-in scene or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb), relative to the experiment file",
+    ),
     ("triangles", "decimate the scene to at most so many primitives, keeping its shape"),
     (
         "fit",
