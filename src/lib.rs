@@ -79,10 +79,10 @@ pub use pxpl5_machine::{
     PRESETS, Parameter, Ports, Preset, Record, RunError, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, CriticalPath, ErrorCauses, ErrorPart, EyeReport, FieldMisregistration, HeadReport, HeadSum, LATENCY_PARTS,
-    LatencyCurve, LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, PathPart, Percentiles,
-    PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, ReprojectionReport, Resource, Results,
-    Showing, SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, side_by_side,
+    Budget, CriticalPath, DepthPicture, ErrorCauses, ErrorPart, EyeReport, FieldMisregistration, HeadReport, HeadSum,
+    LATENCY_PARTS, LatencyCurve, LatencyPartStatistics, LatencyParts, Measure, Measured, PartDefinition, PathPart,
+    Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, ReprojectionReport, Resource,
+    Results, Showing, SurfaceStatistics, TooHeavy, Utilisation, picture, reproject, reproject_with_depth, side_by_side,
 };
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Every, Experiment,

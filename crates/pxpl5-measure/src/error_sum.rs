@@ -8,6 +8,7 @@ use crate::raster::{offset, pose_of_field};
 use crate::registration::{Evaluator, middle};
 use crate::reproject::Move;
 use crate::reprojector::Reprojector;
+use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_display::{Display, Light, Scan};
 use pxpl5_run::{Cause, Estimator, Every, FinalResults, HeadViews, Reprojection, Warp};
@@ -107,8 +108,7 @@ impl Showing {
         const PERIODS: u64 = 60_000;
         let seconds = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO).as_ms() * 1e-3;
         let periods_per_s = PERIODS as f64 / seconds;
-        let (_, distance) = display.rows_lit(PeriodNumber::FIRST);
-        let [columns, lines] = [surface.width, surface.height / distance];
+        let [columns, lines] = [surface.width, surface.height / Rows::lit(display, PeriodNumber::FIRST).distance];
         let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
         let poses = match (setting.every, display.light().scan) {
             (_, Scan::Global) | (Every::Field, _) => 1,

@@ -1,13 +1,16 @@
 //! Pictures after a device has moved them to the newest pose.
 
+use crate::depth_warp::{DepthPicture, Drawing};
 use crate::registration::{Evaluator, Warped, middle};
 use crate::reproject::{Move, fill_row, move_row};
 use crate::reprojector::Reprojector;
-use crate::shown::Shown;
+use crate::rows::Rows;
+use crate::shown::{Drawn, Moment, Shown};
 use image::RgbImage;
 use pxpl5_display::{Display, Scan};
 use pxpl5_run::{Every, FinalResults, HeadViews, Reprojection, Warp};
 use pxpl5_wire::{PeriodNumber, REGION_SIZE};
+use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -19,22 +22,33 @@ pub(crate) struct PictureMover<'a> {
     evaluator: Evaluator,
     shown: Shown,
     setting: Reprojection,
+    /// The latest depths of a picture. Successive fields often show the same picture.
+    latest: RefCell<Option<(Moment, Rows, Arc<DepthPicture>)>>,
 }
 
 impl<'a> PictureMover<'a> {
     pub(crate) fn new(run: FinalResults<'a>, head: &Arc<HeadViews>, setting: Reprojection) -> Self {
         let evaluator = Evaluator::new(&run, head);
-        Self { evaluator, shown: Shown::of_run(&run, head), head: Arc::clone(head), setting, run }
+        Self {
+            evaluator,
+            shown: Shown::of_run(&run, head),
+            head: Arc::clone(head),
+            setting,
+            run,
+            latest: RefCell::default(),
+        }
     }
 
     /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
-        let (first_row, distance) = display.rows_lit(field);
-        let rows = || (first_row..screen.height()).step_by(distance as usize);
+        let rows = || Rows::lit(display, field).of(screen.height());
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);
         let places = rows().flat_map(|y| self.pieces(display, screen.width()).map(move |xs| [xs.start, y]));
         reprojector.begin(display, field, places);
+        if self.setting.by == Warp::Depth && self.move_whole_rows(&reprojector, screen, field, out) {
+            return;
+        }
         for y in rows() {
             for xs in self.pieces(display, screen.width()) {
                 self.move_piece(&reprojector, screen, field, (y, xs), out);
@@ -50,6 +64,71 @@ impl<'a> PictureMover<'a> {
         (0..width).step_by(length as usize).map(move |x| x..(x + length).min(width))
     }
 
+    /// Writes the moved rows of a field by depth, if the field shows one picture of one pose. Returns false without
+    /// writing if the field shows several pictures, or if a row has several poses.
+    fn move_whole_rows(
+        &self,
+        reprojector: &Reprojector,
+        screen: &RgbImage,
+        field: PeriodNumber,
+        out: &mut RgbImage,
+    ) -> bool {
+        let display = self.run.record.display();
+        if matches!(display.light().scan, Scan::Right | Scan::Left) && self.setting.every != Every::Field {
+            return false;
+        }
+        let Some(drawn_for) = self.only_moment(screen, field) else { return false };
+        let rows = Rows::lit(display, field);
+        let newest = |row: u32| reprojector.newest(display, [0, row]).map(|newest| newest.pose);
+        let poses: Option<Vec<_>> = rows.of(screen.height()).map(newest).collect();
+        let Some(poses) = poses else { return false };
+        let depths = self.depths(&drawn_for, [screen.width(), screen.height()], rows);
+        let drawing =
+            Drawing { picture: screen, depths: &depths, view: &self.evaluator.view, rows, drawn_for: &drawn_for.pose };
+        // Successive rows of one pose are moved together.
+        let mut row = 0;
+        for same in poses.chunk_by(|a, b| a == b) {
+            let next = row + same.len() as u32;
+            drawing.move_rows(&same[0], row..next, out);
+            row = next;
+        }
+        true
+    }
+
+    /// Returns the moment for which all pixels of a field were drawn. `None` if they differ or a pixel shows no complete
+    /// picture.
+    fn only_moment(&self, screen: &RgbImage, field: PeriodNumber) -> Option<Moment> {
+        let display = self.run.record.display();
+        let mut only: Option<Moment> = None;
+        for y in Rows::lit(display, field).of(screen.height()) {
+            for xs in self.pieces(display, screen.width()) {
+                let x = xs.start.midpoint(xs.end - 1);
+                let at = display.lights(0, x, y, field)?;
+                let Drawn::View(moment) = self.shown.drawn(&self.run, [x, y], field, at)? else { return None };
+                let first = *only.get_or_insert(moment);
+                if !first.is_same_picture(&moment) {
+                    return None;
+                }
+            }
+        }
+        only
+    }
+
+    /// Returns the depths of a picture's rows. One ray for each pixel finds its depth, once for a picture.
+    fn depths(&self, drawn_for: &Moment, size: [u32; 2], rows: Rows) -> Arc<DepthPicture> {
+        let mut latest = self.latest.borrow_mut();
+        if let Some((moment, of_rows, depths)) = &*latest
+            && moment.is_same_picture(drawn_for)
+            && *of_rows == rows
+        {
+            return Arc::clone(depths);
+        }
+        let depth = |x, y| self.evaluator.depth(drawn_for, middle(x, y)) as f32;
+        let depths = Arc::new(DepthPicture::of_field(size, rows, depth));
+        *latest = Some((*drawn_for, rows, Arc::clone(&depths)));
+        depths
+    }
+
     fn move_piece(
         &self,
         reprojector: &Reprojector,
@@ -59,7 +138,7 @@ impl<'a> PictureMover<'a> {
         out: &mut RgbImage,
     ) {
         let display = self.run.record.display();
-        let rows = display.rows_lit(field);
+        let rows = Rows::lit(display, field);
         let x = xs.start.midpoint(xs.end - 1);
         let lit = display.lights(0, x, y, field);
         let drawn = lit.and_then(|at| self.shown.drawn(&self.run, [x, y], field, at));
