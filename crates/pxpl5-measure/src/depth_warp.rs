@@ -43,14 +43,59 @@ impl DepthPicture {
 /// gap behind which content is hidden. Assumed, 1.02 to 1.2: a floor that is seen under 5 degrees changes by 1.03.
 const SAME_SURFACE: f32 = 1.1;
 
-/// A pixel of the picture, seen from the new pose.
-#[derive(Clone, Copy)]
-struct Seen {
-    /// Position on the screen, in pixels and in rows of the field.
-    x: f32,
-    row: f32,
-    /// Depth from the new pose, or infinity if the point is behind the eye.
-    depth: f32,
+/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that the
+/// compiler computes several pixels at once.
+#[derive(Debug, Default)]
+struct SeenRow {
+    /// Positions on the screen, in pixels and in rows of the field.
+    x: Vec<f32>,
+    row: Vec<f32>,
+    /// Depth from the new pose.
+    depth: Vec<f32>,
+    /// Depth from the old pose, or infinity if the point is behind the eye of the new pose.
+    old_depth: Vec<f32>,
+    /// First column and first row at or after the position, within the limits of the target.
+    next_column: Vec<i32>,
+    next_row: Vec<i32>,
+}
+
+impl SeenRow {
+    fn with_length(length: usize) -> Self {
+        let [x, row, depth, old_depth] = std::array::from_fn(|_| vec![0.0; length]);
+        let [next_column, next_row] = std::array::from_fn(|_| vec![0; length]);
+        Self { x, row, depth, old_depth, next_column, next_row }
+    }
+}
+
+/// The columns and rows that two rows of pixels reach together, column by column.
+#[derive(Debug, Default)]
+struct Pairs {
+    near: Vec<f32>,
+    far: Vec<f32>,
+    columns: [Vec<i32>; 2],
+    rows: [Vec<i32>; 2],
+}
+
+impl Pairs {
+    /// Computes the smaller and the larger number of each pair.
+    fn join(&mut self, above: &SeenRow, below: &SeenRow) {
+        smaller(&mut self.near, &above.old_depth, &below.old_depth);
+        larger(&mut self.far, &above.old_depth, &below.old_depth);
+        smaller(&mut self.columns[0], &above.next_column, &below.next_column);
+        larger(&mut self.columns[1], &above.next_column, &below.next_column);
+        smaller(&mut self.rows[0], &above.next_row, &below.next_row);
+        larger(&mut self.rows[1], &above.next_row, &below.next_row);
+    }
+}
+
+fn smaller<T: PartialOrd + Copy>(out: &mut Vec<T>, a: &[T], b: &[T]) {
+    out.clear();
+    out.extend(a.iter().zip(b).map(|(a, b)| if a < b { *a } else { *b }));
+}
+
+fn larger<T: PartialOrd + Copy>(out: &mut Vec<T>, a: &[T], b: &[T]) {
+    out.clear();
+    out.extend(a.iter().zip(b).map(|(a, b)| if a > b { *a } else { *b }));
 }
 
 /// A picture and the view for which the picture was drawn.
@@ -71,12 +116,13 @@ impl Drawing<'_> {
     pub(crate) fn move_rows(&self, now: &Pose, targets: Range<u32>, out: &mut RgbImage) -> u64 {
         let sources = self.source_rows(now, &targets);
         let mut target = Target::new(self.picture.width(), targets);
-        let mut above: Vec<Seen> = Vec::new();
-        let mut below: Vec<Seen> = Vec::with_capacity(self.picture.width() as usize);
+        let [mut above, mut below] = std::array::from_fn(|_| SeenRow::with_length(target.width as usize));
+        let mut pairs = Pairs::default();
         for row in sources.clone() {
-            self.see_row(now, row, &mut below);
+            self.see_row(now, row, &target, &mut below);
             if row > sources.start {
-                target.draw_cells(self, row, &above, &below);
+                pairs.join(&above, &below);
+                target.draw_cells(row - 1, [&above, &below], &pairs);
             } else {
                 // The upper half of the first row belongs to no cell.
                 target.draw_edge(row, &below);
@@ -95,7 +141,7 @@ impl Drawing<'_> {
     }
 
     /// Computes where the pixels of a row of the field lie, seen from the new pose.
-    fn see_row(&self, now: &Pose, row: u32, out: &mut Vec<Seen>) {
+    fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
         let begin = DVec2::new(0.5, f64::from(self.rows.row(row)) + 0.5);
@@ -105,17 +151,28 @@ impl Drawing<'_> {
         let from = (to_new * (self.drawn_for.position - now.position)).as_vec3();
         let (centre, focal) = (self.view.centre_px().as_vec2(), self.view.focal_px() as f32);
         let [first, distance] = [self.rows.first as f32, self.rows.distance as f32];
-        out.clear();
-        out.extend(self.depth_row(row).iter().enumerate().map(|(x, depth)| {
-            let at = (ray + step * x as f32) * *depth + from;
-            let is_ahead = at.z < -1e-3;
-            let scale = if is_ahead { focal / -at.z } else { 0.0 };
-            Seen {
-                x: centre.x + at.x * scale - 0.5,
-                row: (centre.y - at.y * scale - 0.5 - first) / distance,
-                depth: if is_ahead { -at.z } else { f32::INFINITY },
-            }
-        }));
+        let right = target.width as f32;
+        let [top, bottom] = [target.rows.start as f32, target.rows.end as f32];
+        let depths = self.depth_row(row);
+        // Slices of one length let the compiler drop the checks of indices.
+        let count = depths.len();
+        let [xs, rows, new] = [&mut out.x[..count], &mut out.row[..count], &mut out.depth[..count]];
+        let old = &mut out.old_depth[..count];
+        let [columns, lines] = [&mut out.next_column[..count], &mut out.next_row[..count]];
+        for i in 0..count {
+            let [along, depth] = [i as i32 as f32, depths[i]];
+            let x = (ray.x + step.x * along) * depth + from.x;
+            let y = (ray.y + step.y * along) * depth + from.y;
+            let z = -((ray.z + step.z * along) * depth + from.z);
+            let is_ahead = z > NEAREST_M;
+            let scale = focal / if is_ahead { z } else { NEAREST_M };
+            xs[i] = centre.x + x * scale - 0.5;
+            rows[i] = (centre.y - y * scale - 0.5 - first) / distance;
+            new[i] = z;
+            old[i] = if is_ahead { depth } else { f32::INFINITY };
+            columns[i] = next(xs[i], 0.0, right);
+            lines[i] = next(rows[i], top, bottom);
+        }
     }
 
     /// Returns the rows of the field whose pixels can lie in some rows of the moved field.
@@ -165,76 +222,77 @@ struct Target {
 
 const NOTHING: u32 = u32::MAX;
 
+/// Least depth of a point in front of the eye, in metres.
+const NEAREST_M: f32 = 1e-3;
+
 impl Target {
     fn new(width: u32, rows: Range<u32>) -> Self {
         let size = width as usize * rows.len();
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells between two rows of the picture.
-    fn draw_cells(&mut self, drawing: &Drawing<'_>, lower_row: u32, above: &[Seen], below: &[Seen]) {
-        let [upper_depths, lower_depths] = [lower_row - 1, lower_row].map(|row| drawing.depth_row(row));
-        let first = (lower_row - 1) * self.width;
-        for x in 1..above.len() {
-            let corners = [above[x - 1], above[x], below[x - 1], below[x]];
-            let depths = [upper_depths[x - 1], upper_depths[x], lower_depths[x - 1], lower_depths[x]];
-            let near = depths[0].min(depths[1]).min(depths[2].min(depths[3]));
-            let far = depths[0].max(depths[1]).max(depths[2].max(depths[3]));
-            let at = first + x as u32 - 1;
-            let sources = [at, at + 1, at + self.width, at + self.width + 1];
-            if far <= near * SAME_SURFACE {
-                self.draw_cell(&corners, &sources);
-            } else {
+    /// Draws the cells between two rows of the picture, of which `upper_row` is the upper one.
+    fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
+        let count = pairs.near.len();
+        let first = upper_row * self.width;
+        let [left, right] = [&pairs.columns[0][..count], &pairs.columns[1][..count]];
+        let [top, bottom] = [&pairs.rows[0][..count], &pairs.rows[1][..count]];
+        let [near, far] = [&pairs.near[..count], &pairs.far[..count]];
+        for x in 1..count {
+            let is_surface = far[x - 1].max(far[x]) <= near[x - 1].min(near[x]) * SAME_SURFACE;
+            if !is_surface {
                 // Each pixel ends half a pixel beside its middle, where its surface ends.
-                for i in 0..4 {
-                    self.draw_pixel(corners[i], sources[i]);
+                for (seen, row) in rows.iter().zip([upper_row, upper_row + 1]) {
+                    self.draw_pixel(seen, row, x - 1);
+                    self.draw_pixel(seen, row, x);
+                }
+                continue;
+            }
+            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by little.
+            // It covers pixels from its left and upper sides up to, and without, its right and lower sides.
+            let columns = left[x - 1].min(left[x])..right[x - 1].max(right[x]);
+            for row in top[x - 1].min(top[x])..bottom[x - 1].max(bottom[x]) {
+                for column in columns.clone() {
+                    self.draw_covered([column, row], rows, x, first);
                 }
             }
         }
         // Half a pixel at both ends of the rows belongs to no cell.
-        for x in [0, above.len() - 1] {
-            self.draw_pixel(above[x], first + x as u32);
+        for x in [0, count - 1] {
+            self.draw_pixel(rows[0], upper_row, x);
         }
     }
 
-    fn draw_edge(&mut self, row: u32, seen: &[Seen]) {
-        for (x, seen) in seen.iter().enumerate() {
-            self.draw_pixel(*seen, row * self.width + x as u32);
-        }
-    }
-
-    /// Draws the pixels whose middle lies in a cell. The cell is the box around its corners, because views of one head
-    /// a few milliseconds apart roll by little.
+    /// Draws a pixel that a cell covers. The content of the nearest corner is what a device without filters shows.
     #[inline]
-    fn draw_cell(&mut self, corners: &[Seen; 4], sources: &[u32; 4]) {
-        let [a, b, c, d] = corners;
-        let depth = a.depth.max(b.depth).max(c.depth.max(d.depth));
-        if depth == f32::INFINITY {
-            return;
-        }
-        let columns = covered(a.x.min(b.x).min(c.x.min(d.x)), a.x.max(b.x).max(c.x.max(d.x)), 0..self.width);
-        let rows =
-            covered(a.row.min(b.row).min(c.row.min(d.row)), a.row.max(b.row).max(c.row.max(d.row)), self.rows.clone());
-        for row in rows {
-            for column in columns.clone() {
-                // The content of the nearest corner is what a device without filters shows.
-                let [x, y] = [column as f32, row as f32];
-                let is_right = x - a.x > b.x - x;
-                let is_lower = y - a.row > c.row - y;
-                let i = usize::from(is_right) + 2 * usize::from(is_lower);
-                self.put(column, row, corners[i].depth, sources[i]);
-            }
+    fn draw_covered(&mut self, [column, row]: [i32; 2], [above, below]: [&SeenRow; 2], x: usize, first: u32) {
+        let [at_column, at_row] = [column as f32, row as f32];
+        let is_right = at_column - above.x[x - 1] > above.x[x] - at_column;
+        let is_lower = at_row - above.row[x - 1] > below.row[x - 1] - at_row;
+        let corner = if is_right { x } else { x - 1 };
+        let (depth, source) = match is_lower {
+            true => (below.depth[corner], first + self.width),
+            false => (above.depth[corner], first),
+        };
+        self.put(column as u32, row as u32, depth, source + corner as u32);
+    }
+
+    fn draw_edge(&mut self, row: u32, seen: &SeenRow) {
+        for x in 0..seen.x.len() {
+            self.draw_pixel(seen, row, x);
         }
     }
 
-    fn draw_pixel(&mut self, seen: Seen, source: u32) {
-        if seen.depth == f32::INFINITY {
+    /// Draws the pixel in which a pixel of the picture has its middle.
+    fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
+        if seen.old_depth[x] == f32::INFINITY {
             return;
         }
-        let columns = covered(seen.x - 0.5, seen.x + 0.5, 0..self.width);
-        for row in covered(seen.row - 0.5, seen.row + 0.5, self.rows.clone()) {
+        let limits = [self.rows.start as f32, self.rows.end as f32];
+        let columns = next(seen.x[x] - 0.5, 0.0, self.width as f32)..next(seen.x[x] + 0.5, 0.0, self.width as f32);
+        for line in next(seen.row[x] - 0.5, limits[0], limits[1])..next(seen.row[x] + 0.5, limits[0], limits[1]) {
             for column in columns.clone() {
-                self.put(column, row, seen.depth, source);
+                self.put(column as u32, line as u32, seen.depth[x], row * self.width + x as u32);
             }
         }
     }
@@ -271,13 +329,15 @@ impl Target {
     }
 }
 
-/// Returns the whole numbers from `from` up to and including `to`, within some limits.
+/// Returns the first whole number at or after a position, within two limits that are not negative.
+///
+/// The function `ceil` of the standard library is a call on processors without SSE 4.1.
 #[inline]
-fn covered(from: f32, to: f32, limits: Range<u32>) -> Range<u32> {
-    let begin = from.ceil().max(limits.start as f32);
-    let end = (to.floor() + 1.0).min(limits.end as f32);
-    // Conversions of floats to integers saturate, and a NaN becomes 0.
-    begin as u32..(end as u32).max(begin as u32)
+fn next(position: f32, least: f32, greatest: f32) -> i32 {
+    let inside = if position > least { position } else { least };
+    let inside = if inside < greatest { inside } else { greatest };
+    let before = inside as i32;
+    before + i32::from((before as f32) < inside)
 }
 
 /// Moves a whole picture from the pose for which it was drawn to another pose, by the depths of its pixels.
@@ -326,6 +386,15 @@ mod tests {
     fn moved(depth: impl Fn(u32, u32) -> f32, now: &Pose) -> (RgbImage, u64) {
         let depths = DepthPicture::from_fn(SIZE[0], SIZE[1], depth);
         reproject_with_depth(&places(), &depths, &HmdView::ntsc(), &Pose::IDENTITY, now).expect("the size of the view")
+    }
+
+    #[test]
+    fn the_next_whole_number_lies_at_or_after_a_position_within_the_limits() {
+        for (position, expected) in
+            [(3.0, 3), (3.001, 4), (-7.5, 2), (2.0, 2), (9.5, 9), (1e30, 9), (f32::NEG_INFINITY, 2), (f32::NAN, 2)]
+        {
+            assert_eq!(next(position, 2.0, 9.0), expected, "{position}");
+        }
     }
 
     #[test]

@@ -41,17 +41,28 @@ impl<'a> PictureMover<'a> {
 
     /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
-        let display = self.run.record.display();
-        let rows = || Rows::lit(display, field).of(screen.height());
-        let mut reprojector = Reprojector::new(&self.head, self.setting, None);
-        let places = rows().flat_map(|y| self.pieces(display, screen.width()).map(move |xs| [xs.start, y]));
-        reprojector.begin(display, field, places);
-        if self.setting.by == Warp::Depth && self.move_whole_rows(&reprojector, screen, field, out) {
-            return;
+        let reprojector = self.reprojector(screen, field);
+        if self.setting.by != Warp::Depth || !self.move_whole_rows(&reprojector, screen, field, out) {
+            self.move_pieces(&reprojector, screen, field, out);
         }
-        for y in rows() {
+    }
+
+    /// Returns the newest poses for all parts of a field.
+    fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
+        let display = self.run.record.display();
+        let mut reprojector = Reprojector::new(&self.head, self.setting, None);
+        let rows = Rows::lit(display, field).of(screen.height());
+        let places = rows.flat_map(|y| self.pieces(display, screen.width()).map(move |xs| [xs.start, y]));
+        reprojector.begin(display, field, places);
+        reprojector
+    }
+
+    /// Writes the moved rows of a field piece by piece, each from the picture that it shows.
+    fn move_pieces(&self, reprojector: &Reprojector, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
+        let display = self.run.record.display();
+        for y in Rows::lit(display, field).of(screen.height()) {
             for xs in self.pieces(display, screen.width()) {
-                self.move_piece(&reprojector, screen, field, (y, xs), out);
+                self.move_piece(reprojector, screen, field, (y, xs), out);
             }
         }
     }
@@ -157,5 +168,87 @@ impl<'a> PictureMover<'a> {
         }
         let moved = Move::between(self.setting.by, &self.evaluator.view, &moment.pose, &newest.pose);
         move_row(screen, rows, (y, xs), (&self.evaluator.view, &moved), out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use image::Rgb;
+    use pxpl5_machine::MachineConfig;
+    use pxpl5_run::{Experiment, Head, PipelineSettings, Pixels, Registry};
+    use pxpl5_scene::builtin;
+    use tracking::motion::{Motion, Slide};
+    use tracking::predict::PredictorKind;
+    use tracking::tracker::TrackerConfig;
+    use tracking::{Pose, SettingSink};
+
+    /// A head that slides to the right at 1 m/s and turns to the left at 1 rad/s.
+    #[derive(Clone, Copy, Debug)]
+    struct SlidingTurn;
+
+    impl Motion for SlidingTurn {
+        fn pose(&self, t_ps: u64) -> Pose {
+            let turn = tracking::rotation::about_y(t_ps as f64 * 1e-12 - 0.35);
+            Pose { orientation: turn, ..Slide::right_at(1.0).pose(t_ps) }
+        }
+        fn identify(&self, settings: &mut SettingSink) {
+            settings("motion", &"sliding turn");
+        }
+        fn velocity(&self, t_ps: u64) -> DVec3 {
+            Slide::right_at(1.0).velocity(t_ps)
+        }
+        fn angular_velocity(&self, _: u64) -> DVec3 {
+            DVec3::Y
+        }
+    }
+
+    /// The reference casts rays into the scene from both poses. Both ways take the same picture, so they may differ by
+    /// the rounding to a pixel, and at the edges of objects.
+    #[test]
+    fn a_mesh_with_depth_shows_what_rays_from_both_poses_find() {
+        let registry = Registry::of_papers();
+        let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
+        let motion = Arc::new(SlidingTurn);
+        let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1).expect("in range");
+        let scene = Arc::new(builtin("gallery").expect("built in"));
+        let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
+        let outcome = experiment.fields(24).pixels(Pixels::Off).run().expect("it is small");
+        let run = outcome.settled();
+        let places = |x: u32, y: u32| Rgb([(x >> 8) as u8 + 1 + 8 * (y >> 8) as u8, x as u8, y as u8]);
+        let screen = RgbImage::from_fn(640, 480, places);
+        let place = |pixel: &Rgb<u8>| {
+            let [high, x, y] = pixel.0.map(u32::from);
+            (high > 0).then(|| [(high - 1) % 8 * 256 + x, (high - 1) / 8 * 256 + y])
+        };
+        for (every, field) in [(Every::Field, 20), (Every::Strip, 21), (Every::Line, 21)] {
+            // Without prediction, a picture has the pose at which its drawing began. The newest pose is later.
+            let setting = Reprojection { by: Warp::Depth, every, latency_us: 0 };
+            let mover = PictureMover::new(run, run.head.expect("a head"), setting);
+            let field = PeriodNumber(field);
+            let reprojector = mover.reprojector(&screen, field);
+            let [mut found, mut expected] = [RgbImage::new(640, 480), RgbImage::new(640, 480)];
+            assert!(mover.move_whole_rows(&reprojector, &screen, field, &mut found), "one pose");
+            mover.move_pieces(&reprojector, &screen, field, &mut expected);
+            let [mut same, mut seen, mut black, mut moved] = [0_u32; 4];
+            let lit = Rows::lit(run.record.display(), field);
+            for y in lit.of(480) {
+                for x in 0..640 {
+                    match (place(found.get_pixel(x, y)), place(expected.get_pixel(x, y))) {
+                        (Some(a), Some(b)) => {
+                            seen += 1;
+                            moved += u32::from(b[0].abs_diff(x) > 3);
+                            same += u32::from(a[0].abs_diff(b[0]) <= 1 && a[1].abs_diff(b[1]) <= lit.distance);
+                        }
+                        (None, None) => {}
+                        _ => black += 1,
+                    }
+                }
+            }
+            assert!(seen > 140_000 && f64::from(same) > 0.995 * f64::from(seen), "{every:?}: {same} of {seen}");
+            assert!(moved > 100_000, "{every:?}: {moved} are moved by more than three columns");
+            assert!(black < 2_000, "{every:?}: {black}");
+        }
     }
 }
