@@ -9,7 +9,6 @@ mod kernel;
 use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{AddressProfile, Config, Profile, linear};
 use kernel::{Bench, Strip, frame, strips, triangles};
-use parameters::{ParameterTable, Value};
 use pxpl5::lab::code_times::{code_times, strip_times};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{CodeVersion, Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
@@ -17,6 +16,7 @@ use pxpl5_geometry::kernel::{Kernel, KernelList, KernelPicture, KernelSurface, S
 use pxpl5_geometry::sphere_kernel::SphereKernel;
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::{CodeUse, GpTiming, Stage};
+use pxpl5_sim::parameters::{ParameterTable, Value};
 
 const KERNELS: [(Kernel, &str); 3] =
     [(frame(Schedule::Straight), "straight"), (frame(Schedule::Compiled), "compiled"), (frame(Schedule::Dual), "dual")];

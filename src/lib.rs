@@ -50,20 +50,19 @@
 
 #![warn(missing_docs)]
 
+pub use pphigs::oracle;
 pub use pxpl5_analytic as analytic;
 pub use pxpl5_arp as arp;
-pub use pxpl5_display as display;
 pub use pxpl5_lab as lab;
 pub use pxpl5_machine as machine;
 pub use pxpl5_measure as measure;
-pub use pxpl5_oracle as oracle;
 pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
 pub use pxpl5_views as views;
 pub use pxpl5_volume as volume;
+pub use pxpl5_wire::display;
 pub use tracking;
 
-pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
 pub use pphigs::RegionBinning;
 pub use pxpl5_framebuffer::{
     FrameBufferConfig, HiResConfig, LcdConfig, NtscDisplay, OledConfig, Panel, PanelConfig, PanelNumbers,
@@ -93,6 +92,7 @@ pub use pxpl5_run::{
     Statistics, Stepper, StreamingObserver, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES,
     WINDOW_DEFINITION, Warp, out_of_range,
 };
+pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Standing, Value};
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmSurfaces, results, timeline, trace_export};
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};

@@ -14,20 +14,16 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Layers of the workspace. A crate may depend on crates of the listed layers, and on crates of its own layer only if
 /// that is listed too.
 const FLOORS: [(&str, &[&str], &[&str]); 12] = [
-    ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
+    ("ground", &["pxpl5-sim", "pxpl5-wire", "i860"], &["ground"]),
     (
         "boards",
         &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "address-recalculation"],
         &["ground"],
     ),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
-    ("volume", &["spatialgl", "perspecta"], &["ground", "world", "volume"]),
-    ("geometry", &["pxpl5-geometry", "pphigs", "priority-rendering"], &["ground", "boards", "geometry"]),
-    (
-        "firmware",
-        &["rendering-control", "slats", "jitp", "cube-faces", "cube-control", "pxpl5-oracle"],
-        &["ground", "boards", "geometry"],
-    ),
+    ("volume", &["spatialgl"], &["ground", "world", "volume"]),
+    ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
+    ("firmware", &["rendering-control", "slats", "jitp"], &["ground", "boards", "geometry"]),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
     (
@@ -142,7 +138,7 @@ fn closure(members: &[Crate], name: &str) -> BTreeSet<String> {
 
 #[test]
 fn eyes_fields_and_beams_are_known_to_ntsc_and_its_pipelines_only() {
-    let general = ["pxpl5-display", "pxpl5-machine", "pxpl5-measure", "pxpl5-views"];
+    let general = ["pxpl5-machine", "pxpl5-measure", "pxpl5-views"];
     for member in workspace().iter().filter(|member| general.contains(&member.name.as_str())) {
         for file in member.files.iter().filter(|file| !KNOWS_EYES.contains(&file.path.as_str())) {
             let code = source::code(&source::product(&file.text));
@@ -228,10 +224,7 @@ const ACCEPTED_PLACES: [(&str, &str, &str); 2] = [
 fn nothing_simulated_calls_a_transcendental_function_of_the_host() {
     let members = workspace();
     let simulated: BTreeSet<String> =
-        ["pxpl5-measure", "pxpl5-analytic", "spatialgl", "perspecta", "priority-rendering", "cube-faces"]
-            .iter()
-            .flat_map(|top| closure(&members, top))
-            .collect();
+        ["pxpl5-measure", "pxpl5-analytic", "spatialgl"].iter().flat_map(|top| closure(&members, top)).collect();
     let mut found = Vec::new();
     for member in members.iter().filter(|member| simulated.contains(&member.name)) {
         for file in member.files.iter().filter(|file| !file.path.contains("tests")) {

@@ -9,7 +9,7 @@ use crate::orientation::Orientation;
 use crate::scan::{Latch, Scan};
 use crate::texel::TexelFormat;
 use crate::timing::{ArpTiming, ScanTiming};
-use parameters::check;
+use pxpl5_sim::parameters::check;
 
 /// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,11 +10,11 @@ use crate::memory::{DisplayMemory, MemoryKind, PixelReceipt};
 use crate::orientation::{MatrixWords, OrientationLatch};
 use crate::protocol::{ArpMessage, read};
 use image::RgbImage;
-use parameters::ParameterTable;
-use pxpl5_display::{
+use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{
     Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
 };
-use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;

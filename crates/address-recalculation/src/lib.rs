@@ -90,6 +90,7 @@ pub mod literal;
 mod lookup;
 mod memory;
 mod orientation;
+pub mod priority;
 mod protocol;
 mod scan;
 mod texel;

@@ -1,10 +1,10 @@
 //! All parameters of the display, with their sources.
 
 use crate::error::ArpError;
-use parameters::{MAX, ParameterTable, check};
+use pxpl5_sim::parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::{Clock, Span};
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Word lengths, memories and stage time of the pipeline.
     pub struct ArpTiming {
         /// Number of display memories per eye. Each memory has two buffers of six faces with depth.
@@ -35,7 +35,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Timing of the video scan: NTSC, as in the frame buffer of Pixel-Planes 5.
     pub struct ScanTiming {
         /// Period of the pixel clock, multiplied by `pixel_divisor`. The period is the quotient of both numbers.

@@ -2,7 +2,7 @@
 
 use address_recalculation::{ArpConfig, ArpTiming, Lens, Picture, ScanTiming};
 use proptest::prelude::*;
-use pxpl5_display::DisplayConfig;
+use pxpl5_wire::display::DisplayConfig;
 use std::io::Cursor;
 
 fn refusal(timing: ArpTiming) -> String {

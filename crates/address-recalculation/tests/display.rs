@@ -6,8 +6,8 @@ use address_recalculation::{
     ArpConfig, CubeFace, Latch, begin_update, face_region, orientation_message, region_grid, swap_together,
 };
 use glam::DQuat;
-use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_sim::Time;
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_wire::{
     Body, CopyTarget, Eye, FieldParity, Lines, NodeId, PeriodNumber, RegionId, RegionPixels, swap_request,
 };

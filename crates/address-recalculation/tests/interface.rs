@@ -7,8 +7,8 @@ use address_recalculation::{
     TexelAddress, face_region, region_grid,
 };
 use glam::DQuat;
-use pxpl5_display::DisplayConfig;
 use pxpl5_sim::{Span, SplitMix64, Time};
+use pxpl5_wire::display::DisplayConfig;
 use pxpl5_wire::{Eye, PeriodNumber, PixelSource, Word, swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -264,7 +264,7 @@ fn its_configuration_is_known_by_name_and_by_all_that_it_holds() {
     let config: Box<dyn DisplayConfig> = CONFIG.boxed();
     assert_eq!((config.name(), Bench::new(&CONFIG).display.name()), ("arp", "arp"));
     assert!(config.about().starts_with("address recalculation pipeline"));
-    let names = |tables: Vec<(&'static str, &dyn parameters::ParameterTable)>| -> Vec<&str> {
+    let names = |tables: Vec<(&'static str, &dyn pxpl5_sim::parameters::ParameterTable)>| -> Vec<&str> {
         tables.into_iter().map(|(name, _)| name).collect()
     };
     assert_eq!(names(config.tables()), ["arp", "arp_scan"]);

@@ -2,7 +2,7 @@
 //! their costs in clocks.
 
 use crate::timing::FreezeClocks;
-use parameters::{ParameterInfo, ParameterTable};
+use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 
 /// One row of the freeze table.
 #[derive(Clone, Copy, Debug)]

@@ -4,9 +4,9 @@
 //! the programmer's manual, quoted from memory.
 
 pub use crate::freeze::{FREEZES, Freeze, FreezeRow, FreezeRules, N_FREEZES};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// The constant part of the delay of each row of [`FREEZES`], in the same order. If no published figure narrows a
     /// value, its range is one clock less to one clock more. The reason is that Intel's list is quoted from memory.
     pub struct FreezeClocks {
@@ -78,7 +78,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Timing of the memory behind the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
     /// the middle of the known values of boards of the period.
     pub struct DramTiming {
@@ -107,7 +107,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Sizes of caches, TLB, bus queues and pipes on the chip. These sizes are fixed.
     pub struct ChipSizes {
         /// Size of the instruction cache.

@@ -7,7 +7,7 @@
 
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
-use parameters::{ParameterTable, Value};
+use pxpl5_sim::parameters::{ParameterTable, Value};
 
 const CODE: u32 = 0x1000;
 const DATA: u32 = 0x8000;

@@ -4,8 +4,8 @@
 use i860::state::Mode;
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
 use i860::{AddressProfile, Config, Cpu, DecodedPrograms, Program, Ram, RunEnd, assemble, decode};
-use parameters::ParameterTable;
 use proptest::prelude::*;
+use pxpl5_sim::parameters::ParameterTable;
 use std::sync::Arc;
 
 const CODE: u32 = 0x1000;

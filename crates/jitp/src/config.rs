@@ -1,10 +1,10 @@
 //! Configuration of just-in-time pixels: the boards, and the variant of the pipeline.
 
 use crate::timing::JitpTiming;
-use pxpl5_display::{Aim, LightTimes};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{
     CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, ViewNumber,
 };

@@ -5,11 +5,11 @@ use crate::protocol::DrawingOrder;
 use crate::timing::JitpTiming;
 use glam::{Mat4, Vec3};
 use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame};
-use pxpl5_display::Aim;
 use pxpl5_geometry::Culling;
 use pxpl5_gp::{BoardBench, Firmware, Gp, GpBoard, GpEvent, GpTiming, Priority, Received};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::Aim;
 use pxpl5_wire::{Message, NodeId, PeriodNumber, ViewNumber};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Times of this firmware that the processor's timing table does not contain.
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Times of just-in-time firmware.
     pub struct JitpTiming {
         /// CPU time to interpolate one triangle of the dual display list for a strip and to set it up.

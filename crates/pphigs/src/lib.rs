@@ -38,6 +38,7 @@ mod handing;
 mod interpolating;
 mod layout;
 mod list;
+pub mod oracle;
 mod ordering;
 mod pass;
 mod picture;

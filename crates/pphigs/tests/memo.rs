@@ -6,9 +6,9 @@ mod kernel;
 use i860::Config;
 use i860::timing::{FREEZES, FreezeRow, FreezeRules};
 use kernel::{Bench, frame, triangles};
-use parameters::ParameterTable;
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::Schedule;
+use pxpl5_sim::parameters::ParameterTable;
 
 fn kernel_with(config: Config, schedule: Schedule) -> Bench {
     let mut bench = Bench::new(frame(schedule), Viewport::FRAME, config, &triangles(12, 0.5, 4));

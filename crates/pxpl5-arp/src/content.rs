@@ -1,10 +1,10 @@
 //! Contents of a display memory.
 
+use crate::cube_faces::{CubeView, Drawing};
 use crate::world::World;
 use address_recalculation::FaceSet;
-use cube_faces::{CubeView, Drawing};
+use address_recalculation::priority::{CellAssignment, PriorityError, RegionWarp};
 use glam::DVec3;
-use priority_rendering::{CellAssignment, PriorityError, RegionWarp};
 
 /// The data from which a display memory is drawn. Its cube faces are drawn later, when they are read.
 #[derive(Clone, Debug, PartialEq)]

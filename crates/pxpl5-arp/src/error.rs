@@ -1,8 +1,8 @@
 //! Errors in the definition of an experiment.
 
+use crate::cube_faces::DepthError;
 use address_recalculation::ArpError;
-use cube_faces::DepthError;
-use priority_rendering::PriorityError;
+use address_recalculation::priority::PriorityError;
 use thiserror::Error;
 use tracking::SettingError;
 

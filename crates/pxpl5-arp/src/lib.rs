@@ -32,6 +32,7 @@
 
 mod compare;
 mod content;
+pub mod cube_faces;
 mod error;
 mod experiment;
 pub mod figures;

@@ -1,9 +1,9 @@
 //! The view that the eye sees: cube faces are drawn from the memories' contents and then sampled by the display.
 
+use crate::cube_faces::Drawing;
 use crate::error::ExperimentError;
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
-use cube_faces::Drawing;
 use glam::DQuat;
 use image::{Rgb, RgbImage};
 

@@ -3,12 +3,12 @@
 use crate::error::ExperimentError;
 use crate::hall::Route;
 use crate::settings::{PolicyKind, Settings, SourceKind};
+use address_recalculation::priority::Falloff;
 use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, Picture};
-use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
-use priority_rendering::Falloff;
+use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 use std::collections::BTreeMap;
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Speed and length of the viewer's walk.
     pub struct WalkNumbers {
         /// Walking speed along the scene's path.

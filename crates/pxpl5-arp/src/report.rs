@@ -1,12 +1,12 @@
 //! The results of a viewer's walk, which a report contains as object `arp` with schema `pxpl5-arp/1`. Results that were
 //! not evaluated are null.
 
+use crate::cube_faces::Drawing;
 use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
 use crate::walk::{MemoryTally, WalkTally};
 use crate::world::World;
 use address_recalculation::{ArpConfig, Latch, LookStats};
-use cube_faces::Drawing;
 use pxpl5_sim::Span;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
@@ -239,7 +239,7 @@ fn priority(world: &World, settings: &Settings, tally: &WalkTally, looked: Optio
         theta_deg: (settings.policy != PolicyKind::Full).then_some(settings.numbers.theta_deg),
         cell_m: is_cells.then_some(settings.numbers.cell_m),
         draws_per_s,
-        saved_percent: priority_rendering::saved_percent(draws_per_s, world.segments.len() as f64 * hz),
+        saved_percent: address_recalculation::priority::saved_percent(draws_per_s, world.segments.len() as f64 * hz),
         moved_objects: tally.moved_objects,
         redeals: is_cells.then_some(tally.redeals),
         faces_per_primitive: looked

@@ -1,9 +1,9 @@
 //! Settings of an experiment.
 
+use crate::cube_faces::{CubeView, DepthRange};
 use crate::error::ExperimentError;
+use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
-use cube_faces::{CubeView, DepthRange};
-use priority_rendering::{Falloff, PriorityTiming};
 use serde::{Deserialize, Serialize};
 
 /// The policy that decides which segments are drawn in which frames.

@@ -6,8 +6,8 @@ use crate::error::ExperimentError;
 use crate::settings::{PolicyKind, Settings, SourceKind};
 use crate::source::{Job, Queue};
 use crate::world::World;
+use address_recalculation::priority::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
 use glam::DVec3;
-use priority_rendering::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
 
 /// The smallest part of a scene that a policy assigns to a memory: an object, or a segment of an object.
 #[derive(Clone, Debug)]
@@ -219,7 +219,7 @@ impl<'a> Simulation<'a> {
         &self,
         memory: usize,
         eye: DVec3,
-    ) -> Result<Option<(priority_rendering::RegionWarp, CellAssignment, usize)>, ExperimentError> {
+    ) -> Result<Option<(address_recalculation::priority::RegionWarp, CellAssignment, usize)>, ExperimentError> {
         let Policy::Cells(cells) = &self.policy else { return Ok(None) };
         let is_warped = self.settings.falloff != Falloff::None && self.settings.is_segmented;
         match cells.drawn_from(memory + 1) {

@@ -1,9 +1,9 @@
 //! A scene whose objects are cut at the borders of cells.
 
+use crate::cube_faces::Corner;
 use crate::error::ExperimentError;
-use cube_faces::Corner;
+use address_recalculation::priority::{Cell, Segmentation};
 use glam::DVec3;
-use priority_rendering::{Cell, Segmentation};
 use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
 use std::collections::BTreeMap;
 use std::ops::Range;

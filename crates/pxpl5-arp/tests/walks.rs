@@ -1,8 +1,8 @@
 //! Tests of walks through a scene: general properties and special cases of the policies with a renderer.
 
+use address_recalculation::priority::Falloff;
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
-use priority_rendering::Falloff;
 use pxpl5_arp::pictures::{Picture, of_walk};
 use pxpl5_arp::{
     ExperimentError, Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, World, at_frames, walk,

@@ -1,9 +1,9 @@
 //! Reader of the result rows that `pxpl5 sweep` and `pxpl5 compare` write into a folder.
 
 use crate::error::CliError;
-use parameters::text_of;
 use pxpl5::lab::manifest::Manifest;
 use pxpl5::sweep::ROWS_FILE;
+use pxpl5_sim::parameters::text_of;
 use serde_json::{Map, Value};
 use std::fs;
 use std::path::Path;

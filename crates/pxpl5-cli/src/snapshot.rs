@@ -10,11 +10,11 @@ use crate::scenes;
 use crate::terminal::{progress, warn};
 use crate::too_heavy::too_heavy;
 use clap::Args;
-use parameters::text_of;
 use pxpl5::{
     ExperimentError, ExperimentFile, Host, Keep, Machine, Optimization, Outcome, PeriodNumber, Pixels, Plan, Snapshot,
     Workstation,
 };
+use pxpl5_sim::parameters::text_of;
 use std::path::{Path, PathBuf};
 
 /// Options to save a snapshot of a run, or to resume a run from a snapshot.

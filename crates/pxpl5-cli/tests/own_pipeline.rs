@@ -55,7 +55,7 @@ fn the_example_needs_one_dependency() {
         assert!(line.starts_with("use pxpl5_cli::") || line.starts_with("use std::"), "{line}");
     }
     let code = code.join("\n").replace("pxpl5_cli::pxpl5::", "");
-    for foreign in ["pxpl5::", "glam::", "pphigs::", "parameters::", "tracking::", "slats::"] {
+    for foreign in ["pxpl5::", "glam::", "pphigs::", "pxpl5_sim::parameters::", "tracking::", "slats::"] {
         assert!(!code.contains(foreign), "{foreign}");
     }
 }

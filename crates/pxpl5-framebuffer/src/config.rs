@@ -2,7 +2,7 @@
 
 use crate::error::FrameBufferConfigError;
 use crate::timing::{PortTiming, VideoTiming};
-use parameters::{ParameterTable, check};
+use pxpl5_sim::parameters::{ParameterTable, check};
 
 /// Parameters of one frame buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

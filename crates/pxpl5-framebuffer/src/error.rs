@@ -1,6 +1,6 @@
 //! Errors in the configuration of a frame buffer.
 
-use parameters::ParameterError;
+use pxpl5_sim::parameters::ParameterError;
 
 /// The reason why a frame buffer cannot be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -4,11 +4,11 @@ use crate::{
     FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, ScannedField, Video,
 };
 use image::RgbImage;
-use parameters::ParameterTable;
-use pxpl5_display::{
+use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::{Context, Time};
+use pxpl5_wire::display::{
     Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
 };
-use pxpl5_sim::{Context, Time};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
 //! All timing parameters of the frame buffer.
 
 use crate::error::FrameBufferConfigError;
-use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
+use pxpl5_sim::parameters::{MAX, ParameterTable, check};
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Timing of NTSC video. All times follow from one pixel clock. A line has exactly 780 pixel periods (4004/63 us),
     /// and a field exactly 262.5 lines (1001/60000 s).
     pub struct VideoTiming {
@@ -28,7 +28,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Timing of the board's port on the ring.
     pub struct PortTiming {
         /// Time in which a ring port receives one word. The last word of a message arrives together with the message's

@@ -4,9 +4,9 @@
 mod support;
 
 use image::{Rgb, RgbImage};
-use pxpl5_display::{Counter, Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_wire::{
     Body, CommandList, CopyTarget, Lines, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid, RegionId,
     RegionPixels, Word, swap_request,

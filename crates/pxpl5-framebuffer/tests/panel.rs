@@ -2,9 +2,9 @@
 //! expected pictures.
 
 use image::{Rgb, RgbImage};
-use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, Scan};
 use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, Scan};
 use pxpl5_wire::{
     Body, CopyTarget, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid, RegionId,
     RegionPixels, Word, swap_request,

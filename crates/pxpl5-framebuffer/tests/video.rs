@@ -2,10 +2,10 @@
 
 mod support;
 
-use parameters::{ParameterError, ParameterTable, Value};
 use proptest::prelude::*;
 use pxpl5_framebuffer::{FrameBufferConfigError, Video, VideoTiming};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::{ParameterError, ParameterTable, Value};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use support::field_target;
 

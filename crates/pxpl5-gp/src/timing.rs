@@ -3,7 +3,7 @@
 use crate::CodeVersion;
 use pxpl5_sim::Span;
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// CPU times and memory sizes of a graphics processor.
     pub struct GpTiming {
         /// Size of the memory of one board.
@@ -178,7 +178,7 @@ impl GpTiming {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Times of the host workstation and of the link between host and ring.
     pub struct HostTiming {
         /// Data rate of the link from the host to the ring.
@@ -226,7 +226,7 @@ impl HostTiming {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parameters::ParameterTable;
+    use pxpl5_sim::parameters::ParameterTable;
 
     #[test]
     fn every_number_lies_in_its_range() {

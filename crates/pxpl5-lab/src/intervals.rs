@@ -16,10 +16,10 @@
 //! photodiode's position and the interpretations vary too.
 
 use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
-use parameters::Standing;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
 use pxpl5_sim::mix;
+use pxpl5_sim::parameters::Standing;
 use serde::Serialize;
 
 /// Number of random machines in the joint sample.

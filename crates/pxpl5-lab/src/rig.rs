@@ -14,12 +14,12 @@
 use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
-use pxpl5_display::Display;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;

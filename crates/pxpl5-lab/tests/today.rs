@@ -19,8 +19,8 @@ fn refusal(text: &str) -> String {
 /// Returns the value of a parameter of a plan's first display.
 fn number(plan: &Plan, path: &str) -> u64 {
     match plan.machine.parameters().into_iter().find(|parameter| parameter.path == path).expect("known").value {
-        parameters::Value::Whole(value) => value,
-        parameters::Value::Real(value) => panic!("{path} = {value}"),
+        pxpl5_sim::parameters::Value::Whole(value) => value,
+        pxpl5_sim::parameters::Value::Real(value) => panic!("{path} = {value}"),
     }
 }
 

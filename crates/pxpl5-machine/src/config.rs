@@ -1,11 +1,11 @@
 //! Configuration of a machine: boards, displays and all timing parameters.
 
-use parameters::{Entry, ParameterError, ParameterInfo, ParameterTable, Value, nearest};
-use pxpl5_display::{DisplayConfig, DisplayError};
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
+use pxpl5_sim::parameters::{Entry, ParameterError, ParameterInfo, ParameterTable, Value, nearest};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{DisplayConfig, DisplayError};
 use pxpl5_wire::{NodeId, PeriodNumber};
 use serde::Serialize;
 use std::any::Any;
@@ -467,7 +467,7 @@ mod tests {
         assert!(error.to_string().contains("`gp.triangle_ns`"), "{error}");
     }
 
-    parameters::parameter_table! {
+    pxpl5_sim::parameters::parameter_table! {
         struct Numbers {
             /// A time within a range.
             step_ns: 500, "ns", Assumed, 100..=900, "made up";

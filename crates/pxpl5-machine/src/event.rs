@@ -2,12 +2,12 @@
 
 use crate::board::{Board, EventDescription};
 use crate::ports::Ports;
-use pxpl5_display::DisplayEvent;
 use pxpl5_gp::GpEvent;
 use pxpl5_renderer::RendererEvent;
 use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::DisplayEvent;
 
 /// An event that one board, or the ring, handles.
 #[derive(Debug)]

@@ -1,11 +1,11 @@
 //! The built-in machines, by name.
 
 use crate::config::{ConfigError, MachineConfig};
-use parameters::nearest;
 use pxpl5_framebuffer::FrameBufferConfig;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
+use pxpl5_sim::parameters::nearest;
 use serde::Serialize;
 
 /// A built-in machine: name, description and parameters.

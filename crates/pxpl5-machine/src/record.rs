@@ -3,11 +3,11 @@
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};
 use crate::ports::Ports;
-use pxpl5_display::{Display, Surface};
 use pxpl5_gp::GpUse;
 use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;
 use pxpl5_sim::{Span, Time, TraceHash};
+use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
 

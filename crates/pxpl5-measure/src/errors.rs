@@ -2,10 +2,10 @@
 
 use crate::percentiles::Percentiles;
 use crate::rows::Rows;
-use pxpl5_display::Display;
 use pxpl5_run::{Raster, Reprojection};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Display;
 use serde::Serialize;
 use std::fmt;
 

@@ -9,9 +9,9 @@
 
 use crate::raster::RasterOffsets;
 use image::{GenericImage, RgbImage};
-use pxpl5_display::Display;
 use pxpl5_machine::Record;
 use pxpl5_run::{Outcome, Pixels};
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 
 /// Returns two pictures next to each other, the left eye on the left. The result is as high as the taller picture.

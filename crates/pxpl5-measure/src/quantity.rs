@@ -3,9 +3,9 @@
 use crate::Report;
 use crate::resource::Resource;
 use crate::summary::summary;
-use parameters::nearest;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
+use pxpl5_sim::parameters::nearest;
 
 /// A quantity that can be measured, selected by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! Poses to which a device moves pictures. Each part of a scan (field, strip or line) uses the newest pose.
 
 use crate::rows::Rows;
-use pxpl5_display::{Display, Scan};
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::{Display, Scan};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;

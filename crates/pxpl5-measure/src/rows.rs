@@ -1,7 +1,7 @@
 //! Rows of a picture that a display period lights: all rows, or those of one field.
 
-use pxpl5_display::Display;
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Display;
 
 /// The first row that a display period lights, and the distance to the next row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

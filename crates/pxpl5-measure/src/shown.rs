@@ -3,10 +3,10 @@
 pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::LatchedFaces;
-use pxpl5_display::{Display, Surface};
 use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews, ResultWindow, SampledPose, Source, WARM_UP_PICTURES};
 use pxpl5_scene::HmdConfig;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

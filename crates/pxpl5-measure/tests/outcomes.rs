@@ -1,11 +1,11 @@
 //! Measurements of an outcome besides its report: parts of the latency, latencies by eye, and pictures.
 
-use pxpl5_display::Counter;
 use pxpl5_gp::Stage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measure, Measured, Results, screen};
 use pxpl5_run::{Experiment, ExperimentError, Outcome, PipelineSettings, Pixels, Registry};
 use pxpl5_scene::builtin;
+use pxpl5_wire::display::Counter;
 use pxpl5_wire::{Eye, PeriodNumber, SurfaceId};
 use std::sync::Arc;
 

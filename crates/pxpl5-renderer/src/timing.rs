@@ -6,7 +6,7 @@
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Times and sizes of a renderer board.
     pub struct RendererTiming {
         /// Clock rate of the controller and the array.

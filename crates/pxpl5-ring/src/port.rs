@@ -1,6 +1,6 @@
 //! Events and outputs of the ring.
 
-use parameters::ParameterError;
+use pxpl5_sim::parameters::ParameterError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 

@@ -15,7 +15,7 @@
 //! The model computes no end ahead and skips no event.
 
 use crate::{RingError, RingTiming};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use std::collections::VecDeque;

@@ -2,7 +2,7 @@
 
 use crate::channels::{ChannelSnapshot, MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::collections::VecDeque;

@@ -3,7 +3,7 @@
 use pxpl5_sim::Span;
 use pxpl5_wire::NodeId;
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Times, sizes and channel counts of the ring.
     pub struct RingTiming {
         /// Time in which a channel moves one word.
@@ -49,7 +49,7 @@ impl RingTiming {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parameters::{ParameterTable, Value};
+    use pxpl5_sim::parameters::{ParameterTable, Value};
 
     #[test]
     fn fifteen_messages_of_maximum_size_occupy_the_published_780_us() {

@@ -1,7 +1,7 @@
 //! Segmentation at load time: cuts a scene into segments that each lie in one cell of the world.
 
+use address_recalculation::priority::{Cell, CutVertex, PriorityError, Segmentation};
 use glam::{DVec3, Vec3};
-use priority_rendering::{Cell, CutVertex, PriorityError, Segmentation};
 use pxpl5_scene::{Frame, Scene, SceneParts, Sphere, Structure, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

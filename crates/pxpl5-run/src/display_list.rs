@@ -4,11 +4,11 @@ use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews, Shading,
 };
-use pxpl5_display::Surface;
 use pxpl5_geometry::{Culling, WorldSphere};
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
+use pxpl5_wire::display::Surface;
 use std::sync::Arc;
 
 /// Returns the scene's primitives as a display list. Returns an error if the scene is empty, or if it has more moving

@@ -11,10 +11,10 @@ use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use crate::rehearsal::DryRun;
 use crate::sums::{FinalResults, ObserverFactory};
-use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

@@ -5,8 +5,8 @@ use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency}
 use crate::outcome::Outcome;
 use crate::sums::FinalResults;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
-use pxpl5_display::Display;
 use pxpl5_machine::Record;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
 /// An update of a display memory, with the period from which the memory shows it.

@@ -3,9 +3,9 @@
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
-use pxpl5_display::Aim;
 use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Aim;
 use std::fmt;
 use std::sync::Arc;
 use tracking::motion::{Motion, Still};

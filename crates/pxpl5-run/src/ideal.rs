@@ -4,10 +4,10 @@ use crate::display_list::{display_list_for, hmd_before, view, views};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::outcome::Outcome;
+use pphigs::oracle::IdealPicture;
 use pphigs::{Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::Record;
-use pxpl5_oracle::IdealPicture;
 use pxpl5_sim::Time;
 use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
 
@@ -52,5 +52,5 @@ pub(crate) fn ideal_picture(
     let layout = pipeline.layout();
     let shading = pipeline.shading();
     let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
-    Some(pxpl5_oracle::ideal_picture(&list, &view, surface, &picture))
+    Some(pphigs::oracle::ideal_picture(&list, &view, surface, &picture))
 }

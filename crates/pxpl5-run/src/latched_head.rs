@@ -3,8 +3,8 @@
 use crate::head_views::HeadViews;
 use crate::load_schedule::LoadSchedule;
 use address_recalculation::{AddressRecalculationPipeline, Latch, Scan};
-use pxpl5_display::{Aim, Display, LightTimes};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{Aim, Display, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// Returns the time span in which a field of a scan is lit.

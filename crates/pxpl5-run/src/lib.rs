@@ -90,7 +90,7 @@ pub use pipelines::{
     Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp,
     RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
-pub use pxpl5_display::{Aim, LightTimes};
+pub use pxpl5_wire::display::{Aim, LightTimes};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use rehearsal::{DryRun, SeenTimes};

@@ -1,8 +1,8 @@
 //! Schedule of the orientations that a host sends to a display that latches orientations by line or by pixel.
 
 use address_recalculation::{Latch, Scan};
-use pxpl5_display::{Aim, LightTimes};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// A schedule of the orientations that a host predicts for parts of a field.

@@ -6,15 +6,15 @@ use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 use address_recalculation::Latch;
+use address_recalculation::priority::Cell;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
-use priority_rendering::Cell;
-use pxpl5_display::{Aim, LightTimes};
 use pxpl5_gp::{CodeUse, HostTiming};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -138,7 +138,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns the latch mode of a pipeline that draws cube faces around the head. Returns `None` for other pipelines.
     ///
     /// The latch mode states if the display latches orientations by field, by line or by pixel. The display must accept
-    /// cube faces ([`DisplayConfig::shows_cube_faces`](pxpl5_display::DisplayConfig::shows_cube_faces)).
+    /// cube faces ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
     fn draws_faces(&self) -> Option<Latch> {
         None
     }

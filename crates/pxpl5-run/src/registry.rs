@@ -5,9 +5,9 @@ use crate::experiment::{Estimates, Experiment};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
-use parameters::nearest;
-use pxpl5_display::DisplayConfig;
 use pxpl5_machine::{MachineConfig, NamedTable};
+use pxpl5_sim::parameters::nearest;
+use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;
 use std::sync::Arc;
 

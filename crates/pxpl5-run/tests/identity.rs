@@ -2,10 +2,10 @@
 //! types that store them.
 
 use glam::Vec3;
-use parameters::{ParameterTable, Value};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Fingerprint, Head, Jitp, Raster, Registry, RenderingControl, Viewpoint};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Sphere, Structure, Sway, Vertex};
+use pxpl5_sim::parameters::{ParameterTable, Value};
 use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;

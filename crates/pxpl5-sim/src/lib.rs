@@ -33,6 +33,7 @@
 mod clock;
 mod context;
 mod heap;
+pub mod parameters;
 mod queue;
 mod random;
 mod time;

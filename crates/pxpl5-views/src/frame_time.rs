@@ -1,8 +1,8 @@
 //! Duration of a film's frame.
 
-use pxpl5_display::Display;
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::display::Display;
 
 /// Returns the duration of a film's frame as a fraction of a second, in the form that animated PNG needs.
 ///
@@ -76,9 +76,9 @@ fn nearest_fraction(exact: Fraction) -> Fraction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pxpl5_display::DisplayConfig;
     use pxpl5_framebuffer::{FrameBufferConfig, HiResConfig, VideoTiming};
     use pxpl5_wire::NodeId;
+    use pxpl5_wire::display::DisplayConfig;
 
     fn seconds(config: &dyn DisplayConfig) -> (u16, u16) {
         frame_seconds(config.build(&[NodeId(1)]).expect("can be built").as_ref())

@@ -1,10 +1,10 @@
 //! Displays with more ports than surfaces, such as displays with several memories: their ports, and the pictures that
 //! each port showed.
 
-use pxpl5_display::Display;
 use pxpl5_machine::Record;
 use pxpl5_run::SoFar;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
 
 /// A display port with its name.

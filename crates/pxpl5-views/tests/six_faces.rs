@@ -2,17 +2,17 @@
 //! board.
 
 use image::RgbImage;
-use parameters::ParameterTable;
-use pxpl5_display::{
-    BufferReceipt, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
-    Surface,
-};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl};
 use pxpl5_scene::builtin;
+use pxpl5_sim::parameters::ParameterTable;
 use pxpl5_sim::{Span, Time};
 use pxpl5_views::timeline::{Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::Trace;
+use pxpl5_wire::display::{
+    BufferReceipt, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
+    Surface,
+};
 use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 
 /// Labels and titles of the six faces.
@@ -93,7 +93,7 @@ impl Display for Cube {
         None
     }
 
-    fn counters(&self) -> Vec<pxpl5_display::Counter> {
+    fn counters(&self) -> Vec<pxpl5_wire::display::Counter> {
         Vec::new()
     }
 

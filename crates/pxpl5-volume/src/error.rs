@@ -1,7 +1,7 @@
 //! Errors in the settings and requests of a user.
 
-use perspecta::PerspectaError;
 use spatialgl::SpatialError;
+use spatialgl::perspecta::PerspectaError;
 use thiserror::Error;
 
 /// An error in a setting, a scene or a request. Each message names the item, the expected and the found value.

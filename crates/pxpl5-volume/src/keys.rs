@@ -3,7 +3,7 @@
 use crate::choices::{ClipKind, Named};
 use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
-use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
+use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 
 /// Paths of the settings that are choices, and of the numbers that no table contains.
 const CHOICES: [&str; 12] = [

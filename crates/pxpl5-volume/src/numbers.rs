@@ -1,6 +1,6 @@
 //! All numbers of an experiment, except those of the display and of the time model.
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Offset and bias of the methods that clip to a slice, and the precision of their planes.
     pub struct ClipNumbers {
         /// Distance by which the tapered and the parallel clip move planes outwards.
@@ -12,7 +12,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Parameters of the jittered projection, which gives each slice a random eye and a random shear.
     pub struct JitterNumbers {
         /// Distance of the random eye from the slice.
@@ -24,7 +24,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Position and shear of the perspective eye, which is the same for all slices.
     pub struct EyeNumbers {
         /// Horizontal position of the perspective eye in the slice's coordinates.
@@ -40,7 +40,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Size of the tiles, and number of slices in a batch of queries.
     pub struct TileNumbers {
         /// Side of a tile. With 0 there are no tiles: every pixel is packed and sent.
@@ -50,7 +50,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Parameters of sampling and halftoning.
     pub struct DrawNumbers {
         /// Number of samples per pixel.
@@ -60,7 +60,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// The angle at which the screen begins a turn.
     pub struct SweepNumbers {
         /// Angle of slice 0 around the axis.
@@ -68,7 +68,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// The viewer before the display, and the head-mounted display with which the volume is compared.
     pub struct ViewerNumbers {
         /// Diameter of the displayed volume.

@@ -5,7 +5,7 @@ use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
 use image::imageops::{self, FilterType};
 use image::{GenericImage, Rgb, RgbImage};
-use perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+use spatialgl::perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
 /// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.

@@ -3,7 +3,7 @@
 use crate::experiment::Volume;
 use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
 use crate::settings::VolumeSettings;
-use parameters::Value;
+use pxpl5_sim::parameters::Value;
 use serde::Serialize;
 use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius, innermost_lit_radius};
 

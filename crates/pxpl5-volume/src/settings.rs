@@ -3,8 +3,8 @@
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::error::VolumeError;
 use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
-use parameters::ParameterTable;
-use perspecta::PerspectaConfig;
+use pxpl5_sim::parameters::ParameterTable;
+use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::{
     BinTolerance, Binning, Combine, Coverage, GpuTiming, Halftone, Jitter, Projection, Rotation, SliceClip, Strobes,
     SweptConfig, SweptDisplay, TieRule, Tiling, TimeModel, VolumeConfig,

@@ -2,7 +2,7 @@
 
 use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, TexelAddress};
 use image::RgbImage;
-use pxpl5_oracle::IdealPicture;
+use pphigs::oracle::IdealPicture;
 use pxpl5_renderer::PixelArray;
 use pxpl5_run::{Stepper, bit_of};
 use pxpl5_wire::{Eye, REGION_SIZE, SurfaceId};

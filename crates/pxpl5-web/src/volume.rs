@@ -2,8 +2,8 @@
 
 use crate::pictures::rgba;
 use image::{Rgb, RgbImage};
-use perspecta::{Camera, PerspectaConfig, ViewOptions, view_planes};
 use pxpl5_scene::Scene;
+use spatialgl::perspecta::{Camera, PerspectaConfig, ViewOptions, view_planes};
 use spatialgl::{HostRenderer, Jitter, OneThread, Projection, SliceClip, VolumeConfig, VolumeFrame};
 use spatialgl::{record_scene, render_volume};
 

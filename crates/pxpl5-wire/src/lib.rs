@@ -19,6 +19,7 @@
 //! Sources: TR94 (message length, regions), F89 (expressions, region size).
 
 mod body;
+pub mod display;
 mod expression;
 pub mod format;
 mod number;

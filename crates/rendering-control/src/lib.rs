@@ -30,6 +30,7 @@
 //! Sources: TR94, I3D95.
 
 mod config;
+pub mod cube;
 mod host;
 mod master;
 mod protocol;

@@ -61,6 +61,7 @@ mod halftone;
 mod image;
 mod measure;
 mod pack;
+pub mod perspecta;
 mod projection;
 mod quadratic;
 mod raster;

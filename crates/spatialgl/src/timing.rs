@@ -2,10 +2,10 @@
 
 use crate::projection::Size;
 use crate::stats::VolumeStats;
-use parameters::{ParameterError, ParameterTable};
+use pxpl5_sim::parameters::{ParameterError, ParameterTable};
 use serde::Serialize;
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// The preset `geforce-6800`: a GPU, a processor and a bus of 2005. The SpatialGL paper does not name its hardware.
     pub struct GpuTiming {
         /// Number of fragments that the GPU fills per second.

@@ -13,7 +13,7 @@
 //! - LIST83: List 1983, cited by JITP.
 
 use crate::time::nearest_ps;
-use parameters::{ParameterTable, parameter_table};
+use pxpl5_sim::parameters::{ParameterTable, parameter_table};
 
 /// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest.
 pub(crate) fn ms_to_ps(ms: f64) -> u64 {

@@ -1,6 +1,6 @@
 //! Errors in the settings of head motion, trackers and predictors.
 
-use parameters::ParameterError;
+use pxpl5_sim::parameters::ParameterError;
 use thiserror::Error;
 
 /// An error for a setting out of range or for settings that contradict each other.

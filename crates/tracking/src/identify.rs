@@ -1,6 +1,6 @@
 //! Lists the settings of trackers and predictors as keys and values. The names of experiments derive from this list.
 
-use parameters::{Entry, ParameterTable};
+use pxpl5_sim::parameters::{Entry, ParameterTable};
 
 use crate::config::HostPort;
 use crate::identity::{SettingSink, write_vector};

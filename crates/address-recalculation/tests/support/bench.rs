@@ -1,8 +1,8 @@
 //! A test bench with a display: clock, input messages and outputs.
 
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, ArpTiming, begin_update, region_grid};
-use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_sim::{Context, Time};
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
 use pxpl5_wire::{
     Body, CopyTarget, Lines, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionId, RegionPixels, Word,
     swap_request,

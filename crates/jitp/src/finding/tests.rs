@@ -12,11 +12,11 @@ use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, MemoryPart, ModelEdit, ModelFrame, SearchOutput, Share,
     TransformCost, WindowSearchWork,
 };
-use pxpl5_display::Aim;
 use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{SplitMix64, Time};
+use pxpl5_wire::display::Aim;
 use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
-use priority_rendering::{draws_per_s, saved_percent};
+use address_recalculation::priority::{draws_per_s, saved_percent};
 use serde::Serialize;
 
 /// Number of segments in each display memory, with and without cutting objects at the borders of cells (table 2).

@@ -263,7 +263,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
          If a picture is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is one frame late, a tear is\n\
          wider by the distance of one frame. A pixel is 60 degrees / 640, and a texel is 90 degrees / 512.\n\n\
          | threshold | degrees | side | hall of 8 cells | tear, shown at once | tear, a frame late |\n|---|---|---|---|---|---|\n",
-        all.fits[0].cell_m * priority_rendering::PriorityTiming::PAPERS.theta_deg
+        all.fits[0].cell_m * address_recalculation::priority::PriorityTiming::PAPERS.theta_deg
     );
     for ThresholdRow { threshold, theta_deg, cell_m, at_once_px, frame_late_px } in &all.thresholds {
         let _ = writeln!(

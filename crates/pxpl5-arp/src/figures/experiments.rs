@@ -12,8 +12,8 @@ use crate::settings::{Settings, SourceKind};
 use crate::walk::{WalkTally, at_frames, walk};
 use crate::world::World;
 use address_recalculation::Lens;
+use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Threshold};
 use glam::{DMat3, DQuat, DVec3};
-use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
 use tracking::motion::Walk;
 
 /// Number of frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800

@@ -4,8 +4,8 @@ use super::rules::Rules;
 use crate::error::ExperimentError;
 use crate::walk::at_frames;
 use crate::world::World;
+use address_recalculation::priority::{Cell, Cells, PriorityTiming};
 use glam::DVec3;
-use priority_rendering::{Cell, Cells, PriorityTiming};
 use pxpl5_scene::Scene;
 use tracking::motion::Walk;
 

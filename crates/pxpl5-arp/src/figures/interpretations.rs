@@ -10,8 +10,8 @@ use super::gallery::gallery;
 use super::rules::Rules;
 use crate::error::ExperimentError;
 use crate::walk::at_frames;
+use address_recalculation::priority::{Cell, PriorityTiming};
 use glam::DVec3;
-use priority_rendering::{Cell, PriorityTiming};
 use serde::Serialize;
 use tracking::motion::Walk;
 

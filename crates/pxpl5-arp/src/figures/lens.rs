@@ -1,8 +1,8 @@
 //! A straight edge seen through a lens, to test the lens correction.
 
+use crate::cube_faces::{Corner, CubeView, DepthRange};
 use crate::error::ExperimentError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
-use cube_faces::{Corner, CubeView, DepthRange};
 use glam::DVec3;
 
 /// Returns the bend of an upright edge on the screen and as seen through the lens, in pixels of the picture's middle.

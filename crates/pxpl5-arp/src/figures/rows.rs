@@ -5,7 +5,7 @@ use super::experiments::{Experiments, Fit};
 use super::fit::{RATE_FITTED, RATES_HZ};
 use super::interpretations::PIXEL_DEG;
 use super::row::{Row, Standing};
-use priority_rendering::saved_percent;
+use address_recalculation::priority::saved_percent;
 
 /// Returns the rows of the experiments E1 to E9, except the rows of E1 that need a simulated machine.
 ///

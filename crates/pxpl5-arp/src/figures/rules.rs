@@ -1,6 +1,6 @@
 //! Rules of priority rendering that the paper leaves open.
 
-use priority_rendering::PriorityTiming;
+use address_recalculation::priority::PriorityTiming;
 use serde::Serialize;
 
 /// One set of answers to the questions about priority rendering that the paper leaves open.

@@ -22,9 +22,9 @@ use crate::tears::Tears;
 use crate::walk::{at_frames, walk};
 use crate::world::{Tint, World};
 use address_recalculation::Lens;
+use address_recalculation::priority::Falloff;
 use glam::{DQuat, DVec3};
 use image::RgbImage;
-use priority_rendering::Falloff;
 use tracking::motion::Walk;
 
 /// A picture, and the name of its file without extension.

@@ -2,11 +2,11 @@
 
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
+use crate::cube_faces::CubeView;
 use crate::error::ExperimentError;
 use crate::look::{Faces, picture, rgb};
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, Lens, Picture};
-use cube_faces::CubeView;
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 

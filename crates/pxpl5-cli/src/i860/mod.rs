@@ -149,7 +149,7 @@ fn read(file: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
-    let text = parameters::text_of(&bytes).map_err(|error| format!("{}: {error}", file.display()))?;
+    let text = pxpl5_sim::parameters::text_of(&bytes).map_err(|error| format!("{}: {error}", file.display()))?;
     Ok(text.to_owned())
 }
 

@@ -2,9 +2,9 @@
 
 use crate::error::CliError;
 use crate::rows::{ResultRows, Row, RowsKind, value};
-use parameters::nearest;
 use pxpl5::Statistics;
 use pxpl5::compare::MeanInterval;
+use pxpl5_sim::parameters::nearest;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,9 +2,9 @@
 
 use crate::error::CliError;
 use crate::leaves::{leaves, plain};
-use parameters::text_of;
 use pxpl5::sweep::{Axis, MAX_POINTS, Values};
 use pxpl5::volume::VolumeSettings;
+use pxpl5_sim::parameters::text_of;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};

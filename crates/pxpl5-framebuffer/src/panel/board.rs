@@ -2,11 +2,11 @@
 
 use super::PanelNumbers;
 use image::RgbImage;
-use pxpl5_display::{
+use pxpl5_sim::{Clock, Span, Time};
+use pxpl5_wire::display::{
     BufferReceipt, Counter, Display, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Light,
     Scan, Surface,
 };
-use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber};
 
 /// Frame buffer boards with panels that share a sync generator. There is one board for each picture that is drawn at

@@ -1,9 +1,9 @@
 //! The parameters that all kinds of panels share.
 
-use parameters::{ParameterTable, Value};
-use pxpl5_display::{DisplayError, Light, Scan};
 use pxpl5_sim::Span;
+use pxpl5_sim::parameters::{ParameterTable, Value};
 use pxpl5_wire::REGION_SIZE;
+use pxpl5_wire::display::{DisplayError, Light, Scan};
 
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;

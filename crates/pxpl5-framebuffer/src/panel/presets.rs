@@ -2,11 +2,11 @@
 
 use super::PanelNumbers;
 use super::board::build;
-use parameters::ParameterTable;
-use pxpl5_display::{Display, DisplayConfig, DisplayError};
+use pxpl5_sim::parameters::ParameterTable;
 use pxpl5_wire::NodeId;
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayError};
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 pixels at 72 Hz. Each scan shows every line.
     ///
     /// The rate is assumed. Blanking is not modelled: the scan fills its whole period.
@@ -24,7 +24,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// A rolling OLED panel for one eye, as in headsets of 2016, connected to ring ports of Pixel-Planes 5.
     pub struct OledConfig {
         /// Width of the panel: visible pixels in each line.
@@ -54,7 +54,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// An assumed LCD panel for one eye, with numbers between those of two headsets of 2019. A short flash lights the
     /// panel after all its pixels were written.
     ///
@@ -88,7 +88,7 @@ parameters::parameter_table! {
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// A panel without published values: the experiment chooses all parameters.
     pub struct PanelConfig {
         /// Width of the panel: visible pixels in each line.

@@ -2,9 +2,9 @@
 
 use super::read::{plain, wrong};
 use super::{ExperimentFile, FileError, Setting};
-use parameters::{ParameterTable, Value as Number, nearest};
-use pxpl5_display::DisplayConfig;
 use pxpl5_run::DisplayEntry;
+use pxpl5_sim::parameters::{ParameterTable, Value as Number, nearest};
+use pxpl5_wire::display::DisplayConfig;
 
 /// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";

@@ -3,9 +3,9 @@
 use super::head::COLUMNS;
 use super::hmd;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
-use parameters::nearest;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
+use pxpl5_sim::parameters::nearest;
 use tracking::motion::Columns;
 
 /// A key of an experiment file, with an explanation for the user.

@@ -126,7 +126,8 @@ impl ExperimentFile {
         let file = path.display().to_string();
         let bytes =
             std::fs::read(path).map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
-        let text = parameters::text_of(&bytes).map_err(|reason| FileError::Syntax { place: file.clone(), reason })?;
+        let text = pxpl5_sim::parameters::text_of(&bytes)
+            .map_err(|reason| FileError::Syntax { place: file.clone(), reason })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         self.parse_in(text, &file, &folder)
     }

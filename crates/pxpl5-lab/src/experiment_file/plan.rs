@@ -7,7 +7,6 @@ use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, Setting, display};
 use crate::Workstation;
 use crate::levels::summarise;
-use parameters::{ParameterError, Value as Number};
 use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
@@ -16,6 +15,7 @@ use pxpl5_run::{
     PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
+use pxpl5_sim::parameters::{ParameterError, Value as Number};
 use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];

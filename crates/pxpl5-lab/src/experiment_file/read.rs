@@ -1,7 +1,7 @@
 //! Typed access to the settings of an experiment file.
 
 use super::{ExperimentFile, FileError, Setting};
-use parameters::{Value as Number, nearest};
+use pxpl5_sim::parameters::{Value as Number, nearest};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use toml::Value;

@@ -186,7 +186,7 @@ fn every_pipeline_is_called_what_it_calls_itself() {
     }
 }
 
-fn one_more(value: parameters::Value) -> u64 {
+fn one_more(value: pxpl5_sim::parameters::Value) -> u64 {
     value.whole().expect("the machine's numbers are whole") + 1
 }
 

@@ -2,8 +2,8 @@
 
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;
-use parameters::ParameterTable;
 use pxpl5_machine::{ConfigError, Parameter};
+use pxpl5_sim::parameters::ParameterTable;
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{HostLine, TrackerConfig};
 

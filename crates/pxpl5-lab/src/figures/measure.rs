@@ -7,7 +7,6 @@ use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use crate::parallel;
-use parameters::{ParameterTable, Value};
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
@@ -20,6 +19,7 @@ use pxpl5_run::{
 };
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::{ParameterTable, Value};
 use std::sync::Arc;
 
 /// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.

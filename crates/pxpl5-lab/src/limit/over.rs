@@ -2,11 +2,11 @@
 
 use super::is_reached;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
-use parameters::Value;
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Utilisation, summary};
 use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::Value;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -99,7 +99,7 @@ impl SweepSpace {
         let fault = Fault { sweep: setting, places: &file.sweep_places };
         let table = setting.value.as_table().ok_or_else(|| fault.value("sweep", "a table", &setting.value))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            let nearest = parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
+            let nearest = pxpl5_sim::parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
             return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
         }
         // Each setting of the grid is an axis. The lists of `together` form one more axis, the seeds the last.

@@ -4,9 +4,9 @@ use super::{Contexts, Machine};
 use crate::agenda::schedule_own;
 use crate::event::Event;
 use crate::observation::{Arrival, Observation, Swap};
-use pxpl5_display::{DisplayEvent, DisplayOutput};
 use pxpl5_gp::GpEvent;
 use pxpl5_sim::{EventQueue, Phase, Time};
+use pxpl5_wire::display::{DisplayEvent, DisplayOutput};
 use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 use std::collections::BTreeMap;
 

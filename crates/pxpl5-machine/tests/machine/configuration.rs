@@ -1,18 +1,18 @@
 //! Tests of a machine's configuration: paths of parameters, limits, and parameters that identify a machine.
 
 use crate::rig::{ScreenConfig, ScreenNumbers, config};
-use parameters::{ParameterError, Value};
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_sim::Span;
+use pxpl5_sim::parameters::{ParameterError, Value};
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     struct Numbers {
         /// A time.
         step_ns: 500, "ns", Assumed, 100..=900 in 10..=1_000, "made up";
     }
 }
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     struct Others {
         /// A fraction.
         share: f64 = 0.5, "", Assumed, 0.0..=1.0, "made up";

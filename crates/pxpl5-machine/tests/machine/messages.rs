@@ -138,7 +138,7 @@ fn who_sends_to_a_renderer_goes_on_when_its_fifo_has_the_message() {
 
 #[test]
 fn a_message_for_a_display_past_the_first_reaches_the_port_that_it_names() {
-    let displays: Vec<Box<dyn pxpl5_display::DisplayConfig>> =
+    let displays: Vec<Box<dyn pxpl5_wire::display::DisplayConfig>> =
         vec![Box::new(ScreenConfig::new(2)), Box::new(ScreenConfig::new(1))];
     let mut machine = build(&config(displays));
     let second = machine.ports().displays[1][0];

@@ -4,11 +4,11 @@ use crate::rig::{
     FIRST_GP, MESSAGE, RENDERERS, SCREEN, SECOND_GP, Say, Screen, ScreenConfig, build, config, copy_command,
     load_sender, machine, say, target, us, words,
 };
-use pxpl5_display::Display;
 use pxpl5_framebuffer::NtscDisplay;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, Record, Shown, StageSpan, Transfer};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{CopyPath, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 
 #[test]

@@ -2,14 +2,14 @@
 //! display.
 
 use image::RgbImage;
-use parameters::ParameterTable;
-use pxpl5_display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
 use pxpl5_gp::{Fault, Gp, GpTiming, Priority};
 use pxpl5_machine::{Board, HostLine, Machine, MachineConfig};
 use pxpl5_renderer::{CommandKind, Layout};
+use pxpl5_sim::parameters::ParameterTable;
 use pxpl5_sim::{Phase, Span, Time};
+use pxpl5_wire::display::{
+    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
+};
 use pxpl5_wire::{
     Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PeriodNumber,
     PictureNumber, RegionGrid, RegionId,
@@ -20,7 +20,7 @@ use std::rc::Rc;
 /// Software cost of a message on the test machine's processors.
 pub(crate) const MESSAGE: Span = Span::from_us(1);
 
-parameters::parameter_table! {
+pxpl5_sim::parameters::parameter_table! {
     /// Parameters of the test display.
     pub(crate) struct ScreenNumbers {
         /// Time between ticks.

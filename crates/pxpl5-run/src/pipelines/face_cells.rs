@@ -1,12 +1,12 @@
 //! Policy `cells`: assigns the cells around the user to the display memories.
 
 use super::face_plan::{Due, DuePolicy, Updates, place};
-use cube_control::FaceWarp;
+use address_recalculation::priority::{Cell, Cells, Falloff, PriorityTiming};
 use glam::DVec3;
 use pphigs::FrameView;
-use priority_rendering::{Cell, Cells, Falloff, PriorityTiming};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
+use rendering_control::cube::FaceWarp;
 use std::collections::VecDeque;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use address_recalculation::Latch;
-use priority_rendering::{Falloff, PriorityTiming};
+use address_recalculation::priority::{Falloff, PriorityTiming};
 use pxpl5_machine::NamedTable;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Names and settings of the address recalculation pipelines.
 
 use crate::keys::{Key, KeyValues};
-use priority_rendering::Falloff;
+use address_recalculation::priority::Falloff;
 
 /// Pipeline names by policy and latch mode.
 pub(super) const NAMES: [[&str; 3]; 4] = [

@@ -2,9 +2,9 @@
 
 use super::face_plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
+use address_recalculation::priority::{ObjectView, Objects, PriorityTiming, Threshold};
 use glam::DVec3;
 use pphigs::{DisplayList, DisplayStructure};
-use priority_rendering::{ObjectView, Objects, PriorityTiming, Threshold};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;

@@ -4,11 +4,11 @@
 use crate::face_notes::{RequestedUpdate, RequestedUpdates};
 use crate::pipeline::Setup;
 use address_recalculation::Scan;
-use cube_control::{FaceUpdate, FaceWarp, HostAction};
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
+use rendering_control::cube::{FaceUpdate, FaceWarp, HostAction};
 use std::collections::VecDeque;
 use std::sync::Arc;
 

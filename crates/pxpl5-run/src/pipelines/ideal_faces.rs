@@ -4,14 +4,14 @@ use super::face_plan::{Due, DuePolicy, Plan, Updates};
 use crate::latched_head::lights_of;
 use crate::pipeline::Setup;
 use address_recalculation::{CubeFace, Scan};
-use cube_control::{FaceUpdate, Faces, HostAction, WarpedLists, face_view};
+use pphigs::oracle::ideal_picture_of;
 use pphigs::{DisplayList, FrameView};
 use pxpl5_machine::HostLine;
-use pxpl5_oracle::ideal_picture_of;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{
     Body, MAX_MESSAGE_WORDS, PeriodNumber, PictureNumber, PixelSource, REGION_SIZE, RegionId, RegionPixels, Word,
 };
+use rendering_control::cube::{FaceUpdate, Faces, HostAction, WarpedLists, face_view};
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};

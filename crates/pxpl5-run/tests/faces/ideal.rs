@@ -2,10 +2,10 @@
 
 use super::{FULL, after, assert_no_faults, cells, display, head, machine, memory, texels};
 use address_recalculation::Latch;
-use pxpl5_display::Display;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, FacePipeline, FacePolicy, FaceSource, Pipeline, Pixels};
 use pxpl5_scene::builtin;
+use pxpl5_wire::display::Display;
 use tracking::motion::{Pan, Slide, Still};
 
 const IDEAL: FacePipeline = FacePipeline { source: FaceSource::Ideal, ..FULL };

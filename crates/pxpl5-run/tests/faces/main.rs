@@ -7,13 +7,12 @@ mod ideal;
 mod turning;
 
 use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, FaceSet, TexelAddress};
-use cube_control::face_view;
 use glam::{DVec3, Mat4, Vec3};
+use pphigs::oracle::ideal_picture;
 use pphigs::{DisplayList, EyeView, FrameView, Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_oracle::ideal_picture;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
     Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, Registry, RenderingControl,
@@ -22,6 +21,7 @@ use pxpl5_run::{
 use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Sphere, Structure, builtin};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, Lines, PeriodNumber, RegionGrid};
+use rendering_control::cube::face_view;
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan, Slide};
 use tracking::predict::PredictorKind;

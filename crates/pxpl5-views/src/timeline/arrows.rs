@@ -1,11 +1,11 @@
 //! Dependencies between the stages of one picture, from the sample of the pose until the picture is lit.
 
 use super::model::{Arrow, Bar, DrawingPlace, Timeline};
-use pxpl5_display::Display;
 use pxpl5_gp::Stage;
 use pxpl5_run::PictureTimes;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
+use pxpl5_wire::display::Display;
 
 /// Returns the dependencies of the chosen picture as arrows.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {

@@ -5,10 +5,10 @@ use super::model::{Scan, Timeline, TimelineRow};
 use super::options::{MAX_FIELDS, TimelineOptions};
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
-use pxpl5_display::Display;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_run::{Outcome, PictureTimes, SoFar, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 

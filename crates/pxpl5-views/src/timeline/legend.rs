@@ -4,7 +4,7 @@ use super::model::Timeline;
 use super::style::{HATCHED_SURFACE, PLAIN_SURFACE, STAGES, class_of};
 use crate::markup::Element;
 use crate::svg::{Units, caption, rectangle, segment};
-use pxpl5_display::Surface;
+use pxpl5_wire::display::Surface;
 
 /// Draws a legend of two lines. `x` and `y` are the left end of the first line's baseline.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {

@@ -1,9 +1,9 @@
 //! Content of a timeline, before it is drawn.
 
 use crate::ports::ShownPicture;
-use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Surface;
 use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 
 /// Work on one stage of a picture, drawn as a bar in a row.

@@ -2,9 +2,9 @@
 
 use super::model::Bar;
 use crate::markup::Element;
-use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
 use pxpl5_wire::SurfaceId;
+use pxpl5_wire::display::Surface;
 use std::fmt::Write;
 
 /// Colours of a stage. The dark colour is legible as text and as hatching on white.

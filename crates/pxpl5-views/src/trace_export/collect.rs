@@ -6,12 +6,12 @@ use super::model::{Events, Slice, Trace, Track};
 use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
 use crate::ports::{display_ports, shown as shown_by};
 use crate::results::origin;
-use pxpl5_display::Display;
 use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_machine::{Record, Traffic};
 use pxpl5_measure::Report;
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_sim::Time;
+use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Groups of tracks, which have headings in a trace viewer.
 
-use pxpl5_display::{Display, Surface};
 use pxpl5_machine::Record;
+use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{NodeId, SurfaceId};
 
 /// A group of tracks with a heading. It stands for a board at a port of the ring or for a surface of a display.

@@ -2,8 +2,8 @@
 
 use super::printed::{TRIANGLE, display, recording, row};
 use crate::error::VolumeError;
-use perspecta::PerspectaConfig;
-use perspecta::figures::Figure;
+use spatialgl::perspecta::PerspectaConfig;
+use spatialgl::perspecta::figures::Figure;
 use spatialgl::{
     BinLayout, Binning, CommandBuffer, Context, HostRenderer, Projection, SliceClip, SliceView, SpatialDisplay,
     SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,

@@ -3,7 +3,7 @@
 use super::row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
 use super::shown::Shown;
 use crate::settings::VolumeSettings;
-use parameters::Entry;
+use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. It has every figure, the definitions, the statements without numbers, the

@@ -16,11 +16,11 @@ pub use shown::Shown;
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;
-use perspecta::figures::{definitions, formulas, measured, packing};
 use plain::plain;
 use pxpl5_scene::Scene;
 use row::order;
 use spatialgl::Workers;
+use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
 use std::sync::Arc;
 
 /// Measures all figures. P17 and the number of draws with bins are measured on each of the scenes. `finished` is called

@@ -1,9 +1,9 @@
 //! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
-use parameters::Standing;
-use perspecta::PerspectaConfig;
-use perspecta::figures::Figure;
+use pxpl5_sim::parameters::Standing;
+use spatialgl::perspecta::PerspectaConfig;
+use spatialgl::perspecta::figures::Figure;
 use spatialgl::{
     BinLayout, CommandBuffer, Context, HalfWedge, HostRenderer, Jitter, Projection, SliceClip, SliceView, SliceVolume,
     SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeFrame,

@@ -2,8 +2,8 @@
 
 use super::shown::Shown;
 use crate::experiment::Volume;
-use perspecta::figures::{Definition, Figure};
 use serde::Serialize;
+use spatialgl::perspecta::figures::{Definition, Figure};
 
 /// A figure with the scene on which it was measured.
 #[derive(Clone, Debug, Serialize)]

@@ -26,17 +26,17 @@ use super::command::SliceTriangle;
 use super::halftone::{halftone_clocks, halftone_words};
 use super::traffic::SliceTraffic;
 use crate::error::VolumeError;
-use perspecta::PerspectaConfig;
-use pxpl5_display::{Display, DisplayConfig, DisplayEvent};
 use pxpl5_gp::GpTiming;
 use pxpl5_renderer::{ArrayPool, CommandKind, Layout, Renderer, RendererEvent, RendererOutput, RendererTiming};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent};
 use pxpl5_wire::{
     Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, MAX_MESSAGE_WORDS, Message,
     NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, RegionId, Word, swap_request,
 };
 use serde::Serialize;
+use spatialgl::perspecta::PerspectaConfig;
 use std::collections::VecDeque;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The ring messages of a volume: the commands of every region of every slice, and the resulting packed tiles.
 
 use super::renderer::{PixelPlanesRenderer, SliceLoad};
-use perspecta::batch_messages;
 use pxpl5_wire::{REGION_SIZE, Word};
+use spatialgl::perspecta::batch_messages;
 use spatialgl::{Size, SliceView, Tiling, VolumeFrame};
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub(super) struct SliceMessages {
 
 impl SliceTraffic {
     /// Returns the messages for the slices of a volume that a renderer has drawn. Returns `None` if the tiles cannot be
-    /// sent (see [`perspecta::volume_messages`]).
+    /// sent (see [`spatialgl::perspecta::volume_messages`]).
     #[must_use]
     pub fn of(
         renderer: &PixelPlanesRenderer,

@@ -1,7 +1,7 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 
 use super::Motion;
 use crate::config as table;

@@ -1,5 +1,5 @@
 use glam::{DQuat, DVec3};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 use serde::{Deserialize, Serialize};
 
 use super::Predictor;

@@ -1,5 +1,5 @@
 use glam::{DVec2, DVec3};
-use parameters::ParameterTable;
+use pxpl5_sim::parameters::ParameterTable;
 
 use crate::config as table;
 use crate::error::SettingError;

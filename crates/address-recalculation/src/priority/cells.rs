@@ -1,0 +1,247 @@
+//! The policy `cells`: the floor is divided into square cells of unlimited height. A cell's distance from the user's
+//! cell determines its display memory.
+
+use crate::priority::config::PriorityTiming;
+use crate::priority::update::Update;
+use crate::priority::validity::Threshold;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// A square of the floor, identified by its column (along x) and its row (along z).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Cell {
+    /// Column: the x coordinate of the cell's lower border, divided by the side of a cell.
+    pub x: i64,
+    /// Row: the z coordinate of the cell's lower border, divided by the side of a cell.
+    pub z: i64,
+}
+
+impl Cell {
+    /// Returns the cell that contains a position, for cells of side `side_m`. A position on a border belongs to the
+    /// cell with the larger coordinates.
+    #[must_use]
+    pub fn of(x: f64, z: f64, side_m: f64) -> Self {
+        Self { x: column(x, side_m), z: column(z, side_m) }
+    }
+
+    /// Returns the number of the ring around `self` that contains `other`: 0 for the same cell, 1 for its eight
+    /// neighbours.
+    #[must_use]
+    pub fn ring(self, other: Self) -> u64 {
+        self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
+    }
+}
+
+/// Returns the coordinate at which the column of cells with index `number` begins, in metres.
+pub(crate) fn border(number: i64, side_m: f64) -> f64 {
+    number as f64 * side_m
+}
+
+/// Returns the index of the column of cells that contains a coordinate. It is the last column that begins at or before
+/// the coordinate.
+///
+/// Comparisons correct the rounding errors of the division.
+pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
+    let near = (coordinate / side_m).floor() as i64;
+    let after = i64::from(border(near.saturating_add(1), side_m) <= coordinate);
+    let before = i64::from(border(near, side_m) > coordinate);
+    near.saturating_add(after - before)
+}
+
+/// Assignment of cells to memories by rings: all cells at the same distance from the home cell form a ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellAssignment {
+    /// The home cell, which is the centre of all rings.
+    pub home: Cell,
+    /// Side of a cell in metres.
+    pub side_m: f64,
+    /// Number of rings around the home cell that memory 0 holds.
+    pub inner_rings: u64,
+    /// Ratio of the numbers of rings of neighbouring memories. Memory 1 holds one ring, memory 2 holds `ring_growth`
+    /// rings, and so on.
+    pub ring_growth: u64,
+    /// Number of memories.
+    pub memories: usize,
+}
+
+impl CellAssignment {
+    /// Returns the index of the memory that holds a cell.
+    #[must_use]
+    pub fn memory(&self, cell: Cell) -> usize {
+        let ring = self.home.ring(cell);
+        (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
+    }
+
+    /// Returns the number of the outermost ring that memory k holds. The value does not apply to the slowest memory,
+    /// which has no outer limit.
+    ///
+    /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
+    #[must_use]
+    pub fn last_ring(&self, memory: usize) -> u64 {
+        let next = |(rings, of_memory): (u64, u64)| {
+            (rings.saturating_add(of_memory), of_memory.saturating_mul(self.ring_growth))
+        };
+        (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
+    }
+
+    /// Returns the distance, in metres, between a position and the border at which memory k begins.
+    ///
+    /// The distance is 0 on the border and outside of it. For memory 0, which begins at the eye, it is always 0.
+    #[must_use]
+    pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
+        if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
+    }
+
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k to memory k + 1. The
+    /// distance is 0 outside the border.
+    ///
+    /// Returns `None` for the slowest memory, which has no such border.
+    #[must_use]
+    pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
+        (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
+    }
+
+    /// Returns the horizontal distance between a position and a cell in metres. The distance is 0 inside the cell.
+    fn to_cell(self, place: DVec3, cell: Cell) -> f64 {
+        let along = |place: f64, number: i64| {
+            (border(number, self.side_m) - place).max(place - border(number.saturating_add(1), self.side_m)).max(0.0)
+        };
+        libm::hypot(along(place.x, cell.x), along(place.z, cell.z))
+    }
+
+    /// Returns the distance, in metres, from a position to the border of a square block: the home cell and `rings`
+    /// rings around it. The distance is 0 outside the block.
+    fn inside_block(&self, place: DVec3, rings: u64) -> f64 {
+        let across = |place: f64, home: i64| {
+            let low = (home as f64 - rings as f64) * self.side_m;
+            let high = (home as f64 + rings as f64 + 1.0) * self.side_m;
+            (place - low).min(high - place)
+        };
+        across(place.x, self.home.x).min(across(place.z, self.home.z)).max(0.0)
+    }
+}
+
+/// State of the policy `cells`: the assignment of cells, and the eye position from which each memory was drawn.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    dealing: CellAssignment,
+    threshold: Threshold,
+    has_cascade: bool,
+    to_held_cells: bool,
+    occupied: BTreeSet<Cell>,
+    /// Eye position of each memory's last update. `None` before its first update.
+    drawn_from: Vec<Option<DVec3>>,
+}
+
+impl Cells {
+    /// Creates the policy for a world. The list `occupied` names the cells that contain parts of the scene.
+    ///
+    /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
+    /// this.
+    #[must_use]
+    pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
+        let memories = timing.memories as usize;
+        // The first frame assigns the cells around the real home cell.
+        let dealing = CellAssignment {
+            home: Cell { x: 0, z: 0 },
+            side_m: timing.cell_m,
+            inner_rings: timing.inner_rings,
+            ring_growth: timing.ring_growth,
+            memories,
+        };
+        Self {
+            dealing,
+            threshold: Threshold::of_degrees(timing.theta_deg),
+            has_cascade,
+            to_held_cells: timing.to_held_cells == 1,
+            occupied: occupied.into_iter().collect(),
+            drawn_from: vec![None; memories],
+        }
+    }
+
+    /// Returns the current assignment of cells to memories.
+    #[must_use]
+    pub const fn dealing(&self) -> &CellAssignment {
+        &self.dealing
+    }
+
+    /// Returns the eye position from which a memory was last drawn, or `None` if it was never drawn.
+    #[must_use]
+    pub fn drawn_from(&self, memory: usize) -> Option<DVec3> {
+        self.drawn_from.get(memory).copied().flatten()
+    }
+
+    /// Returns a distance in metres: how far the eye may move from the position of a memory's last update before the
+    /// memory is due.
+    ///
+    /// If distances are measured to occupied cells, the result is infinite for a memory without occupied cells.
+    #[must_use]
+    pub fn way(&self, eye: DVec3, memory: usize) -> f64 {
+        self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
+    }
+
+    /// Returns, for each memory, the distance in metres from the eye to the nearest content that counts.
+    fn distances(&self, eye: DVec3) -> Vec<f64> {
+        if !self.to_held_cells {
+            return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
+        }
+        let mut distances = vec![f64::INFINITY; self.dealing.memories];
+        for cell in &self.occupied {
+            let nearest = &mut distances[self.dealing.memory(*cell)];
+            *nearest = nearest.min(self.dealing.to_cell(eye, *cell));
+        }
+        distances[0] = 0.0;
+        distances
+    }
+
+    /// Computes one frame of the policy for an eye position. Returns the memories to draw.
+    pub fn frame(&mut self, eye: DVec3) -> Update {
+        let memories = self.dealing.memories;
+        let is_first = self.drawn_from[0].is_none();
+        // Find the memories whose images are wrong.
+        let ways: Vec<f64> = self.distances(eye).into_iter().map(|distance| self.threshold.way(distance)).collect();
+        let is_due = |(from, way): (&Option<DVec3>, &f64)| from.is_none_or(|from| eye.distance(from) > *way);
+        let mut due: Vec<bool> = self.drawn_from.iter().zip(&ways).map(is_due).collect();
+        // A memory without cells is right from every position: it is never due and does not delay a new assignment.
+        for (from, _) in self.drawn_from.iter_mut().zip(&ways).filter(|(from, way)| from.is_some() && way.is_infinite())
+        {
+            *from = Some(eye);
+        }
+        // Assign cells anew if the eye has left the home cell.
+        let cell = Cell::of(eye.x, eye.z, self.dealing.side_m);
+        let slowest_may_deal = due[memories - 1] || ways[memories - 1].is_infinite();
+        let deals_anew = cell != self.dealing.home && slowest_may_deal;
+        let mut together = vec![false; memories];
+        if deals_anew {
+            together = self.deal(cell);
+            for (due, changed) in due.iter_mut().zip(&together) {
+                *due |= changed;
+            }
+        }
+        // With a cascade, all memories faster than a due one are due.
+        if self.has_cascade
+            && let Some(slowest) = due.iter().rposition(|due| *due)
+        {
+            due[..slowest].fill(true);
+        }
+        for (from, _) in self.drawn_from.iter_mut().zip(&due).filter(|(_, due)| **due) {
+            *from = Some(eye);
+        }
+        Update { due, together, deals_anew: deals_anew && !is_first }
+    }
+
+    /// Assigns cells to memories around another home cell. Returns, for each memory, true if its cells have changed.
+    fn deal(&mut self, home: Cell) -> Vec<bool> {
+        let before = self.dealing;
+        self.dealing.home = home;
+        let mut changed = vec![false; before.memories];
+        for cell in &self.occupied {
+            let memories = [before.memory(*cell), self.dealing.memory(*cell)];
+            if memories[0] != memories[1] {
+                memories.into_iter().for_each(|memory| changed[memory] = true);
+            }
+        }
+        changed
+    }
+}

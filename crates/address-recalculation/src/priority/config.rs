@@ -1,0 +1,57 @@
+//! Parameters of all policies.
+
+use crate::priority::error::PriorityError;
+use pxpl5_sim::parameters::ParameterTable;
+
+pxpl5_sim::parameters::parameter_table! {
+    /// Parameters of the policies: accepted image error, cells, warping and rates of memories.
+    pub struct PriorityTiming {
+        /// Largest accepted angle between the displayed and the correct direction of a point.
+        theta_deg: f64 = 0.3515625, "deg", Assumed, 0.09..=0.88 in 1e-9..=90.0, "CPR05 2.2: the spacing of pixels in the display memory, not printed; 90/256, so that tears are 3.75 pixels of 60/640 deg (CPR05 5: a few). Range: one such pixel to five texels of 90/512 deg";
+        /// Number of rings of cells around the user's cell in the fastest memory.
+        inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0, the second memory of table 1 would be as fast as the first";
+        /// Rings of each memory relative to the next faster one. Memory 1 holds one ring.
+        ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
+        /// Distance that determines when a memory is due: 0 to the border of its block, 1 to its nearest occupied cell.
+        to_held_cells: 0, "1", Assumed, 0..=1, "not printed; `pxpl5 arp interpretations` ranks both";
+        /// Side of a cell.
+        cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
+        /// Distance from a border within which warping moves vertices. At most the side of a cell.
+        falloff_m: f64 = 0.0, "m", Assumed, 0.0..=100.0 in 0.0..=1e6, "not printed; 0 means the side of a cell";
+        /// Frames per second, which is the rate of the fastest memory.
+        frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
+        /// Number of display memories with different rates.
+        memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2";
+        /// Fastest rotation of a head, used for faces that are out of sight.
+        fastest_turn_deg_per_s: f64 = 370.0, "deg/s", Published, 200.0..=600.0 in 1.0..=100000.0, "JITP, LIST83: the peak turn of a head";
+    }
+}
+
+impl PriorityTiming {
+    /// Checks that all parameters are within their limits, and that the falloff is not longer than the side of a cell.
+    ///
+    /// # Errors
+    ///
+    /// [`PriorityError`] names the parameter, its expected and its found value.
+    pub fn check(&self) -> Result<(), PriorityError> {
+        ParameterTable::check(self).map_err(|error| PriorityError(format!("priority.{error}")))?;
+        if self.falloff_m > self.cell_m {
+            let text = format!("at most a cell's side of {} m, found {}", self.cell_m, self.falloff_m);
+            return Err(PriorityError(format!("priority.falloff_m: expected {text}")));
+        }
+        Ok(())
+    }
+
+    /// Returns the distance from a border within which warping moves vertices, in metres. If the parameter is 0, this
+    /// is the side of a cell.
+    #[must_use]
+    pub const fn falloff_length_m(&self) -> f64 {
+        if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }
+    }
+
+    /// Returns the duration of a frame in seconds.
+    #[must_use]
+    pub fn frame_s(&self) -> f64 {
+        1.0 / self.frame_hz
+    }
+}

@@ -1,0 +1,73 @@
+//! Region warping: vertices near the border to a slower memory are moved, so that the images of both memories meet at
+//! the border.
+
+use crate::priority::error::PriorityError;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Falloff: how the displacement of vertices decreases with the distance from the border.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Falloff {
+    /// No displacement. The images of the two memories do not meet at the border.
+    None,
+    /// Linear decrease to 0.
+    #[default]
+    Linear,
+    /// Smooth decrease to 0, with slope 0 at both ends.
+    Smoothstep,
+    /// Full displacement within the length of the falloff, and none beyond.
+    Step,
+}
+
+impl Falloff {
+    /// All variants with their command-line names.
+    pub const ALL: [(&str, Self); 4] =
+        [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
+
+    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the length
+    /// of the falloff.
+    #[must_use]
+    pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
+        let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
+        match self {
+            Self::None => 0.0,
+            Self::Linear => left,
+            Self::Smoothstep => left * left * (3.0 - 2.0 * left),
+            Self::Step => f64::from(u8::from(left > 0.0)),
+        }
+    }
+}
+
+/// The displacement of a memory's vertices near the border to the next slower memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RegionWarp {
+    falloff: Falloff,
+    length_m: f64,
+    displacement: DVec3,
+}
+
+impl RegionWarp {
+    /// Creates the warp from two eye positions: one of the memory's own drawing, the other of its slower neighbour's
+    /// drawing.
+    ///
+    /// # Errors
+    ///
+    /// [`PriorityError`] if the length of the falloff is not positive and finite.
+    pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
+        if !(length_m > 0.0 && length_m.is_finite()) {
+            return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));
+        }
+        Ok(Self { falloff, length_m, displacement: drawn_from - slower_from })
+    }
+
+    /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
+    /// slower memory, or `None` if there is no slower memory.
+    ///
+    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same as from the
+    /// eye position of the slower memory's drawing.
+    #[must_use]
+    pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
+        to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))
+    }
+}

@@ -1,0 +1,126 @@
+//! Ideal pictures: colours and depths of pixels, and the pixels at which several primitives are equally near.
+
+use crate::oracle::shade::Paint;
+use image::{Rgb, RgbImage};
+use pxpl5_wire::format::Z_BITS;
+use std::collections::BTreeMap;
+
+/// Depth of a pixel on which no primitive is drawn: the largest 24-bit number.
+pub const DEPTH_FARTHEST: u32 = (1 << Z_BITS) - 1;
+
+/// The correct picture of a view, with depths.
+#[derive(Clone, Debug)]
+pub struct IdealPicture {
+    image: RgbImage,
+    depths: Vec<u32>,
+    ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
+}
+
+/// A pixel at which two or more primitives have exactly the same depth and no other primitive is nearer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tie<'a> {
+    /// Column, counted from the left.
+    pub x: u32,
+    /// Row of the picture, counted from the top.
+    pub y: u32,
+    /// Red, green and blue of each of these primitives, in the order of the display list.
+    pub colours: &'a [[u8; 3]],
+}
+
+impl IdealPicture {
+    /// Returns the image. A pixel with a tie has the colour of the primitive that comes first in the display list.
+    #[must_use]
+    pub const fn image(&self) -> &RgbImage {
+        &self.image
+    }
+
+    /// Returns the 24-bit depth of every pixel, row by row. The depth is 0 at the near plane and [`DEPTH_FARTHEST`] at
+    /// an empty pixel.
+    #[must_use]
+    pub fn depths(&self) -> &[u32] {
+        &self.depths
+    }
+
+    /// Returns the pixels with a tie, row by row. On the machine, the order in which commands arrive determines their
+    /// colours.
+    pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
+        self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
+    }
+
+    /// Returns the pixels (x, y) of another image whose colour is wrong, row by row. At a tie, the colour of each of
+    /// the nearest primitives is right.
+    ///
+    /// If `other` has a different size, all its pixels are returned.
+    #[must_use]
+    pub fn differences(&self, other: &RgbImage) -> Vec<[u32; 2]> {
+        let same_size = other.dimensions() == self.image.dimensions();
+        let pixels = other.enumerate_pixels();
+        let wrong = pixels.filter(|(x, y, colour)| !same_size || !self.may_be(*x, *y, **colour));
+        wrong.map(|(x, y, _)| [x, y]).collect()
+    }
+
+    fn may_be(&self, x: u32, y: u32, Rgb(colour): Rgb<u8>) -> bool {
+        let tied = || self.ties.get(&[y, x]).is_some_and(|colours| colours.contains(&colour));
+        self.image.get_pixel(x, y).0 == colour || tied()
+    }
+}
+
+/// The nearest primitive at a pixel: its depth, index and colour or surface.
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    depth: u32,
+    primitive: usize,
+    paint: Paint,
+}
+
+/// The nearest primitive of every pixel while primitives are drawn.
+#[derive(Debug)]
+pub(crate) struct DepthBuffer {
+    width: u32,
+    far: u32,
+    nearest: Vec<Option<Nearest>>,
+    /// Colours or surfaces of further primitives with the same depth as the nearest one, by row and column.
+    tied: BTreeMap<[u32; 2], Vec<Paint>>,
+}
+
+impl DepthBuffer {
+    /// Creates an empty buffer. A pixel with a depth of `far` or more is not drawn.
+    pub(crate) fn new(width: u32, height: u32, far: u32) -> Self {
+        Self { width, far, nearest: vec![None; (width * height) as usize], tied: BTreeMap::new() }
+    }
+
+    /// Draws one pixel of a primitive. `primitive` is the index of the primitive in the order of drawing.
+    ///
+    /// `paint` is called only if the primitive is nearer than the pixel's nearest primitive so far, or equally near.
+    pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
+        let [x, y] = pixel.map(i32::cast_unsigned);
+        let place = &mut self.nearest[(y * self.width + x) as usize];
+        let before = place.as_ref().map_or(self.far, |nearest| nearest.depth);
+        if depth < before {
+            *place = Some(Nearest { depth, primitive, paint: paint() });
+            self.tied.remove(&[y, x]);
+        } else if depth == before && place.as_ref().is_some_and(|nearest| nearest.primitive != primitive) {
+            self.tied.entry([y, x]).or_default().push(paint());
+        }
+    }
+
+    /// Returns the picture with a background colour. `colour` converts the stored value of a pixel to its colour.
+    /// `depth` converts a stored depth to 24 bits.
+    pub(crate) fn finish(
+        self,
+        background: [u8; 3],
+        colour: impl Fn(Paint) -> [u8; 3],
+        depth: impl Fn(u32) -> u32,
+    ) -> IdealPicture {
+        let width = self.width;
+        let at = |x: u32, y: u32| self.nearest[(y * width + x) as usize].map(|nearest| colour(nearest.paint));
+        let height = self.nearest.len() as u32 / width.max(1);
+        let image = RgbImage::from_fn(width, height, |x, y| Rgb(at(x, y).unwrap_or(background)));
+        let ties = self.tied.iter().map(|([y, x], others)| {
+            let first = at(*x, *y).into_iter();
+            ([*y, *x], first.chain(others.iter().map(|paint| colour(*paint))).collect())
+        });
+        let stored = |place: &Option<Nearest>| place.map_or(DEPTH_FARTHEST, |nearest| depth(nearest.depth));
+        IdealPicture { ties: ties.collect(), image, depths: self.nearest.iter().map(stored).collect() }
+    }
+}

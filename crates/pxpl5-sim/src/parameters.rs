@@ -1,0 +1,53 @@
+//! Tables of parameters. Each parameter has a unit, a provenance, a range and a source.
+//!
+//! A [`parameter_table!`] declares the parameters once. The declaration has four uses:
+//!
+//! ```text
+//!                        +--> table.word_ns        code reads a plain public field
+//!  parameter_table! { }--+--> table.get("word_ns") files, sweeps and reports reach it by name
+//!                        +--> Table::INFOS         unit, standing, range, limits, source
+//!                        +--> table.check()        refuses what the model cannot take
+//! ```
+//!
+//! # A line of a table
+//!
+//! ```text
+//! /// Time of one word on a channel.
+//! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
+//! ```
+//!
+//! The parts are value, unit, provenance, the *range* that the sources allow, the *limits* within which the model
+//! works, and source. If a line has no limits, the range also serves as the limits. Values are whole numbers (`u64`,
+//! exact) unless the line says `f64`:
+//!
+//! ```text
+//! /// Error of each axis, rms.
+//! position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0, "data sheet";
+//! ```
+//!
+//! # Range and limits
+//!
+//! A value outside its range is possible in an experiment, although no source allows such a value.
+//! [`ParameterTable::out_of_range`] lists these parameters. A value outside its limits is an error of
+//! [`ParameterTable::check`].
+//!
+//! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
+//! table checks these rules.
+
+mod error;
+mod info;
+mod macros;
+mod nearest;
+mod number;
+mod table;
+mod text;
+mod value;
+
+pub use crate::parameter_table;
+pub use error::ParameterError;
+pub use info::{ParameterInfo, Standing};
+pub use nearest::nearest;
+pub use number::{Number, check, check_value};
+pub use table::{Entry, ParameterTable};
+pub use text::text_of;
+pub use value::{MAX, Value};

@@ -1,0 +1,57 @@
+//! Unit, provenance, range and source of a parameter.
+
+use crate::parameters::Value;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The provenance of a parameter's value: printed, calculated or assumed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Standing {
+    /// The value is printed in a paper or manual that the authors of this program have read.
+    Published,
+    /// The value follows by arithmetic from published figures.
+    Derived,
+    /// The value is recollected or estimated. Its range is as wide as the published figures allow.
+    Assumed,
+}
+
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Published => "published",
+            Self::Derived => "derived",
+            Self::Assumed => "assumed",
+        })
+    }
+}
+
+/// Unit, provenance, range and source of one parameter of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ParameterInfo {
+    /// Field name of the parameter within its table.
+    pub name: &'static str,
+    /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
+    pub unit: &'static str,
+    /// Provenance of the parameter's value: printed, calculated or assumed.
+    pub standing: Standing,
+    /// Initial value of the parameter. The papers print this value or allow it.
+    pub papers: Value,
+    /// Smallest and largest value that the sources allow.
+    pub range: (Value, Value),
+    /// Smallest and largest value that the model can use.
+    pub limits: (Value, Value),
+    /// Source of the value: a paper's short name, a formula or a reason.
+    pub source: &'static str,
+}
+
+impl ParameterInfo {
+    /// Returns the range of a parameter that is a whole number. Returns `None` for a real number.
+    #[must_use]
+    pub fn whole_range(&self) -> Option<(u64, u64)> {
+        match self.range {
+            (Value::Whole(low), Value::Whole(high)) => Some((low, high)),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Types of parameter values in code, and the check of a value against its limits.
+
+use crate::parameters::{ParameterError, Value};
+
+/// A number type that a field of a table can have: `u64` or `f64`.
+pub trait Number: Copy + Into<Value> {
+    /// Converts a value to this type. Returns `None` if the type is a whole number and the value is not whole.
+    fn from_value(value: Value) -> Option<Self>;
+
+    /// Sets the field called `name` to a value.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::NotWhole`] if the field needs a whole number and the value is not whole.
+    fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
+        *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
+        Ok(())
+    }
+}
+
+impl Number for u64 {
+    fn from_value(value: Value) -> Option<Self> {
+        value.whole()
+    }
+}
+
+impl Number for f64 {
+    fn from_value(value: Value) -> Option<Self> {
+        Some(value.real())
+    }
+}
+
+/// Checks a number against its limits. Use this function for a number outside all tables, or for limits that depend on
+/// other numbers.
+///
+/// # Errors
+///
+/// [`ParameterError::OutOfLimits`] if the number is outside `limits`, the smallest and largest allowed value.
+pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
+    check_value(name, found.into(), (limits.0.into(), limits.1.into()))
+}
+
+/// Checks a [`Value`] against its smallest and largest allowed value. If the limits are constants, the check compiles
+/// to two comparisons.
+#[doc(hidden)]
+#[inline]
+pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {
+    if limits.0 <= found && found <= limits.1 {
+        return Ok(());
+    }
+    Err(ParameterError::OutOfLimits { name, limits, found })
+}

@@ -1,0 +1,76 @@
+//! Access to the parameters of a table by name, for any table type.
+
+use crate::parameters::{ParameterError, ParameterInfo, Value};
+
+/// A parameter of a table together with its current value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Name, unit, provenance, range, limits and source of the parameter.
+    pub info: &'static ParameterInfo,
+    /// Current value of the parameter in the table.
+    pub value: Value,
+}
+
+impl Entry {
+    /// Returns true if the current value lies within the range that the sources allow.
+    #[must_use]
+    pub fn is_in_range(&self) -> bool {
+        let (low, high) = self.info.range;
+        (low..=high).contains(&self.value)
+    }
+
+    /// Returns true if the current value lies within the limits in which the model works.
+    #[must_use]
+    pub fn is_within_limits(&self) -> bool {
+        let (least, most) = self.info.limits;
+        (least..=most).contains(&self.value)
+    }
+}
+
+/// A table made by [`parameter_table!`](crate::parameters::parameter_table). A machine can hold tables of different types
+/// as `&dyn ParameterTable`.
+pub trait ParameterTable {
+    /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The constant `INFOS`
+    /// of the table's type has the same contents.
+    fn infos(&self) -> &'static [ParameterInfo];
+
+    /// Returns the value of a parameter.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::Unknown`] if no parameter has this name.
+    fn get(&self, name: &str) -> Result<Value, ParameterError>;
+
+    /// Changes the value of a parameter. Range and limits are not checked here: call [`ParameterTable::check`].
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::Unknown`] if no parameter has this name. [`ParameterError::NotWhole`] if the field holds whole
+    /// numbers and the value is not whole.
+    fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
+
+    /// Returns all parameters with their current values, in the order of the fields.
+    fn entries(&self) -> Vec<Entry> {
+        self.infos().iter().filter_map(|info| Some(Entry { info, value: self.get(info.name).ok()? })).collect()
+    }
+
+    /// Returns the parameters whose current values lie outside the ranges that the sources allow.
+    fn out_of_range(&self) -> Vec<Entry> {
+        self.entries().into_iter().filter(|entry| !entry.is_in_range()).collect()
+    }
+
+    /// Checks the value of every parameter against the limits of the model.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::OutOfLimits`] for the first parameter whose value is outside its limits.
+    fn check(&self) -> Result<(), ParameterError> {
+        for info in self.infos() {
+            let value = self.get(info.name)?;
+            if !(Entry { info, value }).is_within_limits() {
+                return Err(ParameterError::OutOfLimits { name: info.name, limits: info.limits, found: value });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,87 @@
+//! Configuration of displays: their parameters and their construction.
+
+use crate::NodeId;
+use crate::display::Display;
+use pxpl5_sim::parameters::ParameterTable;
+use std::any::Any;
+use std::fmt::Debug;
+
+/// The parameters of a display, and the function that builds the display from them.
+pub trait DisplayConfig: Any + Debug + Send + Sync {
+    /// Returns the name of this kind of display, as given to `--display`.
+    fn name(&self) -> &'static str;
+
+    /// Returns a description of the display that names its source.
+    fn about(&self) -> &'static str;
+
+    /// Returns the parameter tables, each with its path prefix, such as `video` in `video.frame_lines`.
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)>;
+
+    /// Returns the parameter tables for modification, each with its path prefix.
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)>;
+
+    /// Returns the number of ring ports that the display needs. `pictures` is the number of pictures that the pipeline
+    /// draws at the same time: 1, or 2 for two eyes. The default is one port for each picture.
+    fn ports(&self, pictures: usize) -> usize {
+        pictures
+    }
+
+    /// Checks that the display can be built. The default implementation checks every parameter against the limits in
+    /// its table.
+    ///
+    /// # Errors
+    ///
+    /// [`DisplayError`] with the name of the parameter, the expected range and the found value.
+    fn check(&self) -> Result<(), DisplayError> {
+        let mut tables = self.tables().into_iter();
+        tables.try_for_each(|(name, table)| table.check().map_err(|error| DisplayError(format!("{name}.{error}"))))
+    }
+
+    /// Builds the display at the ring ports `nodes`. There must be as many ports as [`DisplayConfig::ports`] returns.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`DisplayConfig::check`].
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError>;
+
+    /// Returns a copy of the configuration in a box.
+    fn boxed(&self) -> Box<dyn DisplayConfig>;
+
+    /// Sets the number of past periods whose pictures the display remembers. The default is 2. Displays without such a
+    /// memory ignore the call.
+    fn remember(&mut self, _periods: u64) {}
+
+    /// Sets the background colour 0x00RRGGBB of pixels where nothing is drawn. Displays whose pictures contain a
+    /// background of their own ignore the call.
+    fn set_background(&mut self, _background: u32) {}
+
+    /// Returns true if the display shows the faces of a cube around the head, with depth. Returns false if the display
+    /// shows an eye's view.
+    fn shows_cube_faces(&self) -> bool {
+        false
+    }
+
+    /// Returns true if both configurations describe the same kind of display and have equal parameters.
+    fn equals(&self, other: &dyn DisplayConfig) -> bool {
+        self.name() == other.name() && values(self.tables()) == values(other.tables())
+    }
+}
+
+impl Clone for Box<dyn DisplayConfig> {
+    fn clone(&self) -> Self {
+        self.boxed()
+    }
+}
+
+/// Returns all parameters of the tables with their values, in order.
+fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<pxpl5_sim::parameters::Entry> {
+    tables.into_iter().flat_map(|(_, table)| table.entries()).collect()
+}
+
+/// The reason why a display cannot be built.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct DisplayError(
+    /// Error message with the expected and the found value.
+    pub String,
+);

@@ -1,0 +1,88 @@
+//! An update, which draws the content of one display memory anew.
+
+use crate::cube::warp::{FaceWarp, WARP_WORDS};
+use address_recalculation::{begin_update, swap_together};
+use pphigs::FrameView;
+use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
+use std::sync::Arc;
+
+/// An update of one display memory, as the host requests it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceUpdate {
+    /// Number of the update. Updates of all memories are counted together, from 0.
+    pub number: PictureNumber,
+    /// Index of the display memory.
+    pub memory: u8,
+    /// Buffer of the memory that receives the update, 0 or 1.
+    pub buffer: u8,
+    /// Bit mask of the memories that must swap together with this one. 0 if this memory swaps alone.
+    pub together: u8,
+    /// The view of an eye in its initial orientation, with the projection of a face. Also contains the edits of
+    /// structures.
+    pub view: FrameView,
+    /// For each structure of the display list: true if the memory holds the structure.
+    pub structures: Vec<bool>,
+    /// Displacement of vertices near the border to the slower memory. `None` if no vertex is displaced.
+    pub warp: Option<FaceWarp>,
+}
+
+/// Bit in the third word of an encoded update. If it is set, a warp follows the bits of the structures.
+const WARPED: Word = 1 << 24;
+
+/// Number of words before the bits of the structures.
+const HEADER: usize = 4;
+
+impl FaceUpdate {
+    /// Returns the two messages that announce the update to its memory: the regions that will arrive, and the swap
+    /// request.
+    #[must_use]
+    pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
+        let map = begin_update(face_texels, self.buffer, regions);
+        let alone = || swap_request(self.buffer);
+        let request = if self.together == 0 { alone() } else { swap_together(self.buffer, self.together) };
+        [map, request]
+    }
+
+    /// Encodes the update as words.
+    ///
+    /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
+    /// structure, warp if there is one, view.
+    pub(crate) fn to_words(&self) -> Vec<Word> {
+        let [low, high] = self.number.to_words();
+        let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;
+        let place = place | self.warp.map_or(0, |_| WARPED);
+        let mut words = vec![low, high, place, self.structures.len() as Word];
+        words.extend(self.structures.chunks(32).map(bits));
+        words.extend(self.warp.iter().flat_map(|warp| warp.to_words()));
+        words.extend(self.view.to_words());
+        words
+    }
+
+    /// Decodes an update, or returns `None` for invalid words.
+    pub(crate) fn from_words(words: &[Word]) -> Option<Self> {
+        let [low, high, place, count] = *words.first_chunk::<HEADER>()?;
+        // Split the words after the header: bits of structures, warp if any, view.
+        let rest = &words[HEADER..];
+        let (map, rest) = rest.split_at_checked((count as usize).div_ceil(32))?;
+        let warp_words = if place & WARPED == 0 { 0 } else { WARP_WORDS };
+        let (warp, view) = rest.split_at_checked(warp_words)?;
+        let warp = match warp.first_chunk() {
+            Some(words) => Some(FaceWarp::from_words(words)?),
+            None => None,
+        };
+        let structures = (0..count as usize).map(|i| map[i / 32] >> (i % 32) & 1 == 1).collect();
+        Some(Self {
+            number: PictureNumber::from_words(low, high),
+            memory: place as u8,
+            buffer: (place >> 8) as u8,
+            together: (place >> 16) as u8,
+            view: FrameView::from_words(view).ok()?,
+            structures,
+            warp,
+        })
+    }
+}
+
+fn bits(chosen: &[bool]) -> Word {
+    (0..).zip(chosen).fold(0, |word, (bit, chosen)| word | Word::from(*chosen) << bit)
+}

@@ -1,0 +1,266 @@
+//! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that the code computes
+//! or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A definition has
+//! no verdict.
+
+use crate::perspecta::timing::PerspectaConfig;
+use crate::{
+    BinLayout, HalfWedge, PIXELS_PER_WORD, SliceClip, SpatialDisplay, SweptDisplay, Tiling, VolumeStats, pack_dense,
+    packed_word,
+};
+use pxpl5_sim::parameters::Standing;
+use serde::Serialize;
+
+/// A number of the paper that is an input of the model, or that follows from inputs of the model by arithmetic alone.
+///
+/// No run can give another value, so a definition is not compared with anything.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Definition {
+    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
+    pub id: &'static str,
+    /// Statement of the paper, in words.
+    pub statement: &'static str,
+    /// Value of the number in this model. Its unit is `unit`.
+    pub value: f64,
+    pub unit: &'static str,
+    /// Provenance of the value: printed or derived.
+    pub standing: Standing,
+}
+
+/// A figure of the paper, and the value that the model gives for it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
+    pub id: &'static str,
+    /// Statement of the paper, in words.
+    pub statement: &'static str,
+    /// Unit of both values and of the interval.
+    pub unit: &'static str,
+    /// Printed or derived value. If the paper says "over" or "about", it is the middle or the end of the interval.
+    pub published: f64,
+    /// Least and greatest computed value that count as agreement with the figure.
+    pub interval: [f64; 2],
+    /// Value of the figure that this model computes.
+    pub computed: f64,
+    /// Provenance of the published value: printed or derived.
+    pub standing: Standing,
+}
+
+impl Figure {
+    /// Returns true if the model agrees with the figure.
+    #[must_use]
+    pub fn is_met(&self) -> bool {
+        (self.interval[0]..=self.interval[1]).contains(&self.computed)
+    }
+
+    /// Returns the difference between computed and published value, as a percentage of the published value.
+    #[must_use]
+    pub fn error_percent(&self) -> f64 {
+        100.0 * (self.computed - self.published) / self.published
+    }
+}
+
+/// Returns a figure whose interval of agreement extends by `half_digit` to both sides of the published value.
+const fn row(
+    id: &'static str,
+    statement: &'static str,
+    unit: &'static str,
+    standing: Standing,
+    (published, half_digit): (f64, f64),
+    computed: f64,
+) -> Figure {
+    Figure {
+        id,
+        statement,
+        unit,
+        published,
+        interval: [published - half_digit, published + half_digit],
+        computed,
+        standing,
+    }
+}
+
+/// Least and greatest number of months in which the performance of GPUs doubles (published, P20).
+pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
+
+/// Number of months in which the performance of CPUs doubles (published, P20).
+pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
+
+const P: Standing = Standing::Published;
+const D: Standing = Standing::Derived;
+
+/// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
+#[must_use]
+pub fn definitions() -> Vec<Definition> {
+    let config = PerspectaConfig::PAPERS;
+    let mut all = inputs(&config);
+    all.extend(arithmetic(&config));
+    all.extend(doubling());
+    all
+}
+
+/// Returns a definition. Its number is printed in the paper if `id` begins with P, and otherwise derived.
+fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
+    Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
+}
+
+/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
+const GPU_PIXEL_BITS: f64 = 32.0;
+
+/// Number of bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
+const PROJECTOR_PIXEL_BITS: f64 = 3.0;
+
+fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
+    let bin_planes = BinLayout::double_wedges(0.0).planes.len();
+    vec![
+        defined("P1", "slices strobed in a revolution", config.slices as f64, "slices"),
+        defined("P6", "bits of a pixel on the GPU", GPU_PIXEL_BITS, "bits"),
+        defined("P13", "bin planes", bin_planes as f64, "planes"),
+        defined("P14", "stages of binning: vertices, primitives", 2.0, "stages"),
+        defined("P16", "side of a tile", f64::from(Tiling::PAPER.tile.unwrap_or(0)), "pixels"),
+        defined("P18", "slices between stencil clears", f64::from(Tiling::PAPER.batch), "slices"),
+    ]
+}
+
+fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
+    let slice = (config.width * config.height) as f64;
+    let pixels = config.slices as f64 * slice;
+    let packed = pixels / f64::from(PIXELS_PER_WORD) * 4.0;
+    let tile = f64::from(Tiling::PAPER.tile.unwrap_or(0));
+    // Sizes follow from the numbers of slices, pixels and bits.
+    let waste = 100.0 * (1.0 - PROJECTOR_PIXEL_BITS / GPU_PIXEL_BITS);
+    let stores = 2.0 * pixels * PROJECTOR_PIXEL_BITS / 8.0;
+    vec![
+        defined("P8", "waste of 32-bit pixels (printed: over 90 %)", waste, "%"),
+        defined("P11", "image data of a frame (printed: 100s of MB)", pixels * 4.0 / 1e6, "MB"),
+        defined("D5", "voxels of 198 planes", pixels / 2.0, "voxels"),
+        defined("D7", "a volume in 32-bit pixels", pixels * 4.0, "B"),
+        defined("D7", "a slice in 32-bit pixels", slice * 4.0, "B"),
+        defined("D7", "a volume packed", packed, "B"),
+        defined("D7", "a volume packed, 10 % of its tiles", packed * 0.1 / 1e6, "MB"),
+        defined("D7", "a tile packed", tile * tile / f64::from(PIXELS_PER_WORD) * 4.0, "B"),
+        defined("D7", "two frame stores of 3-bit pixels", stores / 1e6, "MB"),
+    ]
+}
+
+/// Returns figures P20 and D12. D12 is the CPU's share of the time in 18 months, if CPU and GPU take equal times today.
+fn doubling() -> Vec<Definition> {
+    // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
+    let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
+    let [least, most] = GPU_DOUBLES_MONTHS;
+    vec![
+        defined("P20", "months in which a GPU doubles, at least", least, "months"),
+        defined("P20", "months in which a GPU doubles, at most", most, "months"),
+        defined("P20", "months in which a CPU doubles", CPU_DOUBLES_MONTHS, "months"),
+        defined("D12", "share of the CPU in 18 months, GPU doubling in 9", share(most), "%"),
+        defined("D12", "share of the CPU in 18 months, GPU doubling in 6", share(least), "%"),
+    ]
+}
+
+/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slabs.
+#[must_use]
+pub fn formulas() -> Vec<Figure> {
+    let config = PerspectaConfig::PAPERS;
+    let wedge = HalfWedge::new(config.slices as u32, config.width as f64 / 2.0);
+    let mut figures = geometry(&config, wedge);
+    figures.extend(means(&config, wedge));
+    figures
+}
+
+/// Returns figures that compare the counts of a volume with the paper's statements about "most scenes".
+#[must_use]
+pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
+    let occupancy = Figure {
+        interval: [5.0, 20.0],
+        ..row("P17", "tiles that are not empty, most scenes", "%", P, (10.0, 0.0), stats.tile_occupancy_percent())
+    };
+    let draws = 100.0 * stats.draws as f64 / stats.draws_unbinned.max(1) as f64;
+    let binned = row("section 6", "draws that bins leave of all", "%", D, (28.5, 4.0), draws);
+    vec![occupancy, binned]
+}
+
+/// Returns figures from the packed words of white pixels: ten pixels per word (P10), and the percentage of unused bits
+/// in both packings (D6).
+#[must_use]
+pub fn packing() -> Vec<Figure> {
+    let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
+    let fits = (1..=32).take_while(|pixels| white(*pixels).len() == 1).count();
+    let waste = |word: u32| 100.0 * (1.0 - f64::from(word.count_ones()) / 32.0);
+    let dense = white(fits).first().map_or(f64::NAN, |word| waste(*word));
+    vec![
+        row("P10", "3-bit pixels that a densely packed word holds", "pixels", P, (10.0, 0.0), fits as f64),
+        row("D6", "waste of a packed word", "%", D, (25.0, 0.0), waste(packed_word(0xFF, 0xFF, 0xFF))),
+        row("D6", "waste of a densely packed word", "%", D, (6.25, 0.0), dense),
+    ]
+}
+
+fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
+    let exact = config.swept(SliceClip::ShaderPlanes, crate::Projection::Orthographic).ok();
+    let served = |display: SweptDisplay| {
+        // The second half turn has the same planes.
+        let distinct = &display.views()[..config.slices as usize / 2];
+        distinct.iter().filter(|view| view.bins & 1 == 1).count()
+    };
+    let served = exact.map_or(0, served);
+    vec![
+        row("D1", "sine of half the slice pitch", "1", D, (0.007_933_231_6, 5e-11), wedge.sin),
+        row("D1", "cosine of half of it", "1", D, (0.999_968_531_4, 5e-11), wedge.cos),
+        row("D1", "tangent of half of it", "1", D, (0.007_933_481_2, 5e-11), wedge.tan),
+        row("D9", "planes that a double wedge serves", "planes", D, (50.0, 0.0), served as f64),
+    ]
+}
+
+fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
+    let planes = config.slices as f64 / 2.0;
+    let [prism, hyperbola] = [SliceClip::Prism, SliceClip::Hyperbolic(0.25)].map(|clip| mean(clip, wedge, planes));
+    vec![
+        row("D10", "planes that show a point, mean over the disc, prism", "planes", D, (2.0, 5e-4), prism),
+        row("D11", "the same of the hyperbola", "planes", D, (1.081, 5e-4), hyperbola),
+    ]
+}
+
+/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's slab
+/// within the disc, times the number of planes, divided by the area of the disc.
+fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
+    let steps = 100_000;
+    let radius = wedge.radius;
+    let step = radius / f64::from(steps);
+    let area: f64 = (0..steps)
+        .map(|i| {
+            // Integrate the thickness over u, limited to the disc.
+            let u = (f64::from(i) + 0.5) * step;
+            let chord = (radius * radius - u * u).sqrt();
+            4.0 * step * clip.half_thickness(wedge, u).min(chord)
+        })
+        .sum();
+    planes * area / (std::f64::consts::PI * radius * radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks the definitions against the printed numbers of the paper, and against D numbers computed by hand for 396
+    /// x 768 x 768 pixels.
+    #[test]
+    fn definitions_are_the_papers_numbers() {
+        let all = definitions();
+        let values = |id: &str| all.iter().filter(|one| one.id == id).map(|one| one.value).collect::<Vec<_>>();
+        for (id, expected) in [("P1", 396.0), ("P6", 32.0), ("P8", 90.625), ("P13", 4.0), ("P16", 32.0), ("P18", 4.0)] {
+            assert_eq!(values(id), [expected], "{id}");
+        }
+        assert_eq!(values("P20"), [6.0, 9.0, 18.0]);
+        assert_eq!(values("D5"), [116_785_152.0]);
+        let expected = [934_281_216.0, 2_359_296.0, 116_785_152.0, 11.678_515_2, 512.0, 175.177_728];
+        let found = values("D7");
+        assert_eq!(found.len(), expected.len());
+        assert!(found.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-9), "{found:?}");
+        assert!(values("D12").iter().zip([200.0 / 3.0, 80.0]).all(|(value, expected)| (value - expected).abs() < 1e-9));
+    }
+
+    #[test]
+    fn what_code_computes_and_packs_is_what_was_derived() {
+        for figure in formulas().into_iter().chain(packing()) {
+            assert!(figure.is_met(), "{figure:?}");
+        }
+    }
+}
