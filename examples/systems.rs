@@ -96,7 +96,7 @@ fn measure(system: &str, setting: Option<(&str, &str)>, motion: &str) -> Result<
 
 fn of_run(outcome: &Outcome) -> Found {
     let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
-    let has_faces = outcome.pipeline().draws_faces().is_some();
+    let has_faces = outcome.pipeline().draws_faces();
     let errors = outcome.pixel_errors().filter(|errors| errors.judged > 0);
     let arrivals = outcome.observation().arrivals.iter();
     let texels = arrivals.map(|arrival| {
@@ -117,7 +117,7 @@ fn triangles(outcome: &Outcome) -> u64 {
     let notes = outcome.face_notes().all();
     let Some(head) = outcome.head() else { return 0 };
     let scene = head.scene();
-    if outcome.pipeline().draws_faces().is_none() {
+    if !outcome.pipeline().draws_faces() {
         let views: BTreeSet<_> = head.sampled().into_iter().map(|sampled| sampled.number).collect();
         return (views.len() * outcome.pipeline().eyes() * scene.triangles().len()) as u64;
     }

@@ -165,7 +165,7 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
         let definition = pipeline.due_definition();
         Err(RigRunError::NoFrames { pipeline: pipeline.name(), reason, definition })
     };
-    if pipeline.draws_faces().is_some() {
+    if pipeline.draws_faces() {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
     }
     let machine =

@@ -1,7 +1,7 @@
 //! A machine with its programs, and the records of its run.
 
-use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
+use crate::pipelines::faces::requests::RequestedUpdates;
 use pxpl5_machine::Machine;
 use pxpl5_sim::Time;
 use std::sync::Arc;

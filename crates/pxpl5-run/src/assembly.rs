@@ -1,15 +1,15 @@
 //! Builds the machine of an experiment and loads its programs.
 
 use crate::assembled::Assembled;
-use crate::cut::moves;
 use crate::display_list::{display_list_for, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
-use crate::face_notes::RequestedUpdates;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, Setup};
+use crate::pipelines::faces::requests::RequestedUpdates;
+use crate::pipelines::faces::segments::moves;
 use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_gp::HostTiming;
@@ -114,7 +114,7 @@ pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<()
     let Some(display) = config.displays.first() else { return Ok(()) };
     let name = display.name();
     let pipeline_name = pipeline.name();
-    match (display.shows_cube_faces(), pipeline.draws_faces().is_some()) {
+    match (display.shows_cube_faces(), pipeline.draws_faces()) {
         (true, false) => Err(ConfigError::Board(format!(
             "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
         ))),

@@ -1,6 +1,5 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
-use crate::face_notes::RequestedUpdates;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
@@ -8,6 +7,7 @@ use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
 use crate::rehearsal::DryRun;
 use crate::sums::{FinalResults, ObserverFactory};

@@ -18,15 +18,12 @@
 
 mod assembled;
 mod assembly;
-mod cut;
 mod display_list;
 mod displays;
 mod due;
 mod error;
 mod estimator;
 mod experiment;
-mod face_notes;
-mod faces;
 mod fingerprint;
 mod head;
 mod head_views;
@@ -35,10 +32,8 @@ mod ideal;
 mod instants;
 mod keep;
 mod keys;
-mod latched_head;
 mod latency;
 mod level;
-mod load_schedule;
 mod outcome;
 mod papers;
 mod picture_ends;
@@ -66,29 +61,28 @@ mod views;
 mod window;
 
 pub use assembly::check_faces;
-pub use cut::SegmentedScene;
 pub use display_list::{display_list, views};
 pub use due::DuePictures;
 pub use error::ExperimentError;
 pub use estimator::{Cause, Estimator};
 pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, out_of_range, warning_without_code};
-pub use face_notes::{RequestedUpdate, RequestedUpdates};
-pub use faces::{FaceHistory, ShownUpdate};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
 pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use keep::Keep;
 pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
-pub use latched_head::{OrientationTiming, RotationLatency};
 pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
 pub use level::{Level, UnknownLevel};
 pub use outcome::Outcome;
 pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
+pub use pipelines::faces::{
+    FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
+    RotationLatency, SegmentedScene, ShownUpdate,
+};
 pub use pipelines::{
-    Code, FaceLens, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp,
-    RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
 pub use pxpl5_wire::display::{Aim, LightTimes};
 pub use raster::Raster;

@@ -3,10 +3,10 @@
 use crate::assembled::Assembled;
 use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;
-use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::statistics::Statistics;
 use crate::summary::Summary;

@@ -1,11 +1,10 @@
 //! Interface between pipelines and experiments.
 
-use crate::cut::SegmentedScene;
-use crate::face_notes::RequestedUpdates;
 use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
+use crate::pipelines::faces::requests::RequestedUpdates;
+use crate::pipelines::faces::segments::SegmentedScene;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
-use address_recalculation::Latch;
 use address_recalculation::priority::Cell;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
@@ -135,12 +134,10 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns the latch mode of a pipeline that draws cube faces around the head. Returns `None` for other pipelines.
-    ///
-    /// The latch mode states if the display latches orientations by field, by line or by pixel. The display must accept
-    /// cube faces ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
-    fn draws_faces(&self) -> Option<Latch> {
-        None
+    /// Returns true if the pipeline draws faces of a cube around the head. The display must accept cube faces
+    /// ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
+    fn draws_faces(&self) -> bool {
+        false
     }
 
     /// Returns the scene in segments that are drawn at different times. Returns `None` if the host loads the scene

@@ -2,9 +2,9 @@
 
 use crate::head_views::{HeadViews, SampledPose};
 use crate::instants::Instants;
-use crate::latched_head::OrientationTiming;
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
+use crate::pipelines::faces::latched_head::OrientationTiming;
 use crate::rehearsal::{DryRun, SeenTimes};
 use crate::sums::{FinalResults, StreamingObserver};
 use pxpl5_sim::{Span, Time};

@@ -1,8 +1,8 @@
 //! Streaming observers. They process the records of a run during the run, so that old records can be discarded.
 
-use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_scene::HmdConfig;

@@ -3,10 +3,10 @@
 //! Pictures are processed once, in the order in which they are shown, after all their records are complete. With a
 //! limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
 
-use crate::face_notes::RequestedUpdates;
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
 use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::samples::Samples;
 use crate::summary::retraces;
 use crate::sums::FinalResults;

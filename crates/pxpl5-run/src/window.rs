@@ -2,10 +2,10 @@
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
-use crate::face_notes::RequestedUpdates;
 use crate::head_views::HeadViews;
 use crate::keep::Keep;
 use crate::pipeline::{PictureTimes, Pipeline};
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use crate::samples::KEPT_SAMPLES;
 use crate::sums::{FinalResults, StreamingObserver};

@@ -94,7 +94,7 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
 /// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
 /// get their orientation at scan-out. Other pictures are drawn for the orientation of their pose.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
-    if outcome.pipeline().draws_faces().is_none() {
+    if !outcome.pipeline().draws_faces() {
         return Budget::totals_ms(outcome);
     }
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()

@@ -48,7 +48,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     for (key, _, set, _) in NUMBERS {
         let Some(value) = file.number(key)? else { continue };
         let Some(setting) = file.get(key) else { continue };
-        if pipeline.draws_faces().is_some() {
+        if pipeline.draws_faces() {
             return Err(FileError::NotApplicable {
                 place: setting.place.clone(),
                 key: key.to_owned(),

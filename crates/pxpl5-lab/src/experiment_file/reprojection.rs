@@ -36,7 +36,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
         Named::Raster(Raster::Vdrt) if !pipeline.has_one_pose() => {
             refused("rendering-control, slats and jitp-field, whose pictures are of one pose")
         }
-        Named::Device(Warp::Depth) if pipeline.draws_faces().is_some() => refused(
+        Named::Device(Warp::Depth) if pipeline.draws_faces() => refused(
             "pipelines whose pictures are of one eye; faces around the head are several pictures, of which the turn is left: rotation",
         ),
         Named::Raster(raster) => {

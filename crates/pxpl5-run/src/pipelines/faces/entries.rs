@@ -1,10 +1,10 @@
 //! Registry entries of the address recalculation pipelines: names, settings and variants.
 
-use super::face_keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
-use super::faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
-use super::{SHADING, shading_or};
+use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::pipeline::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
+use crate::pipelines::{SHADING, shading_or};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use address_recalculation::Latch;
 use address_recalculation::priority::{Falloff, PriorityTiming};
@@ -92,7 +92,7 @@ macro_rules! entry {
 }
 
 /// Registry entries of the address recalculation pipelines.
-pub(super) const ENTRIES: [PipelineEntry; 15] = [
+pub(crate) const ENTRIES: [PipelineEntry; 15] = [
     entry!(Full, Field, "six faces in one memory, looked up with one orientation for each field (VRAIS 93)"),
     entry!(Full, Line, BY_LINE),
     entry!(Full, Pixel, BY_PIXEL),

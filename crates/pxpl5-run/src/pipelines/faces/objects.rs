@@ -1,6 +1,6 @@
 //! Policy `objects`: each structure is in the slowest memory in which its image stays correct.
 
-use super::face_plan::{Due, DuePolicy, Updates};
+use super::plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
 use address_recalculation::priority::{ObjectView, Objects, PriorityTiming, Threshold};
 use glam::DVec3;

@@ -1,8 +1,8 @@
 //! History of the cube faces that were drawn around a head, and the latency of head rotation.
 
-use crate::face_notes::{RequestedUpdate, RequestedUpdates};
-use crate::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
 use crate::outcome::Outcome;
+use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
+use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use crate::sums::FinalResults;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_machine::Record;

@@ -363,7 +363,7 @@ mod tests {
     /// Expects the program's result 1 + 4 + 9 + 16 = 30.
     #[test]
     fn the_program_of_the_guide_runs_and_gives_what_it_says() {
-        let page = include_str!("../../../../docs/guide/assembler.md");
+        let page = include_str!("../../../docs/guide/assembler.md");
         let source = page.split_once("```i860\n").and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
         let program = load(&file("guide.s", source), 0x1000).expect("correct");
         let shown = RunOptions { show: vec!["result:1".to_owned()], json: true, budget: 1_000, ..options() };

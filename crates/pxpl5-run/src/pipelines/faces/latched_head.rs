@@ -1,7 +1,7 @@
 //! Timing of the head orientations that a display with cube faces latches.
 
 use crate::head_views::HeadViews;
-use crate::load_schedule::LoadSchedule;
+use crate::pipelines::faces::load_schedule::LoadSchedule;
 use address_recalculation::{AddressRecalculationPipeline, Latch, Scan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Display, LightTimes};

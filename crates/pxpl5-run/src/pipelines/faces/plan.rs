@@ -1,8 +1,8 @@
 //! Plans by which a host requests updates of display memories: the whole scene in one memory, or the memories that a
 //! policy selects.
 
-use crate::face_notes::{RequestedUpdate, RequestedUpdates};
 use crate::pipeline::Setup;
+use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use address_recalculation::Scan;
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};

@@ -1,19 +1,12 @@
 //! The pipelines of the papers. To add a pipeline, write it in a new file here or in a separate crate, and add a line
 //! to `entries`.
 
-mod face_cells;
-mod face_entries;
-mod face_keys;
-mod face_objects;
-mod face_plan;
-mod faces;
+pub(crate) mod faces;
 mod frameless;
-mod ideal_faces;
 mod jitp;
 mod rendering_control;
 mod slats;
 
-pub use faces::{FaceLens, FacePipeline, FacePolicy, FaceSource};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
@@ -34,7 +27,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
-    all.extend(face_entries::ENTRIES);
+    all.extend(faces::ENTRIES);
     all
 }
 

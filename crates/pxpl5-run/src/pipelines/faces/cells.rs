@@ -1,6 +1,6 @@
 //! Policy `cells`: assigns the cells around the user to the display memories.
 
-use super::face_plan::{Due, DuePolicy, Updates, place};
+use super::plan::{Due, DuePolicy, Updates, place};
 use address_recalculation::priority::{Cell, Cells, Falloff, PriorityTiming};
 use glam::DVec3;
 use pphigs::FrameView;

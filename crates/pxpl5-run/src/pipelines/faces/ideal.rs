@@ -1,8 +1,8 @@
 //! Cube faces that an ideal renderer draws without delay, and the host's connection that carries them to the display.
 
-use super::face_plan::{Due, DuePolicy, Plan, Updates};
-use crate::latched_head::lights_of;
+use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;
+use crate::pipelines::faces::latched_head::lights_of;
 use address_recalculation::{CubeFace, Scan};
 use pphigs::oracle::ideal_picture_of;
 use pphigs::{DisplayList, FrameView};

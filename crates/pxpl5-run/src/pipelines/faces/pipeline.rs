@@ -1,0 +1,504 @@
+//! Pipelines that draw the six faces of a cube around the eye. The display then selects the visible pixels by the
+//! orientation of the head.
+
+use super::cells::ByCells;
+use super::ideal::{All, IdealFaces, seen_next};
+use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::objects::ByObjects;
+use super::plan::{Cycles, Full, Plan, Updates};
+use crate::keys::KeyValue;
+use crate::picture_ends::PictureResult;
+use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
+use crate::pipelines::faces::segments::SegmentedScene;
+use crate::pipelines::{region_has_room, shading_value, swapped_in};
+use crate::views::{Poses, ReportTimes};
+use address_recalculation::priority::{Falloff, PriorityError, PriorityTiming};
+use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
+use glam::{Mat4, Vec4};
+use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::Priority;
+use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record, Shown};
+use pxpl5_renderer::Layout;
+use pxpl5_scene::{HmdConfig, Scene};
+use pxpl5_sim::Time;
+use pxpl5_wire::{Body, CopyContent, Lines, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
+
+/// Policy that decides which structures are drawn into which display memory, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacePolicy {
+    /// One display memory holds all structures and is redrawn as often as possible.
+    Full,
+    /// Each structure is drawn into the slowest memory in which its image stays correct (CPR05).
+    Objects,
+    /// Each structure is drawn into the memory of its cell. The memory depends on the cell's distance from the user's
+    /// cell (CPR05).
+    Cells,
+    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent memories meet at their borders.
+    CellsWarped,
+}
+
+/// The renderer that draws the faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceSource {
+    /// The firmware of Rendering Control on the machine.
+    PixelPlanes,
+    /// An ideal renderer without delay. It draws from the eye position that is known at each retrace.
+    ///
+    /// Errors that remain with this renderer are not caused by drawing time.
+    Ideal,
+}
+
+/// A pipeline that draws six cube faces for an address recalculation display.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FacePipeline {
+    /// The renderer that draws the faces.
+    pub source: FaceSource,
+    /// Policy that assigns structures to display memories.
+    pub policy: FacePolicy,
+    /// Interval at which the display latches (samples and holds) the head's orientation: by field, by line or by pixel.
+    pub latch: Latch,
+    /// Method of shading.
+    pub shading: Shading,
+    /// For policies with cells: true if structures are cut at the borders of cells.
+    ///
+    /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
+    pub segmented: bool,
+    /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
+    /// memory.
+    pub falloff: Falloff,
+    /// Lens between display and eye.
+    pub lens: FaceLens,
+}
+
+/// A lens that is defined by at most two coefficients.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FaceLens {
+    /// The lens in the display's configuration. By default, the display has no lens.
+    #[default]
+    OfDisplay,
+    /// Lens whose viewing angle is proportional to the distance from the middle.
+    Equidistant,
+    /// Radial polynomial lens with two coefficients. The coefficients are stored as bits, so that pipelines can be
+    /// compared.
+    Radial([u64; 2]),
+}
+
+impl FaceLens {
+    /// Converts a lens. Returns `None` for a lens that is defined by a table.
+    #[must_use]
+    pub fn of(lens: Lens) -> Option<Self> {
+        match lens {
+            Lens::Flat => Some(Self::OfDisplay),
+            Lens::Equidistant => Some(Self::Equidistant),
+            Lens::Radial { k1, k2 } => Some(Self::Radial([k1, k2].map(f64::to_bits))),
+            Lens::Table(_) => None,
+        }
+    }
+
+    /// Returns the lens, or `None` for the lens of the display.
+    #[must_use]
+    pub fn lens(self) -> Option<Lens> {
+        match self {
+            Self::OfDisplay => None,
+            Self::Equidistant => Some(Lens::Equidistant),
+            Self::Radial(bits) => {
+                let [k1, k2] = bits.map(f64::from_bits);
+                Some(Lens::Radial { k1, k2 })
+            }
+        }
+    }
+
+    /// Returns the lens as text for an experiment file, or `None` for the lens of the display.
+    fn text(self) -> Option<String> {
+        match self.lens()? {
+            Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
+            Lens::Radial { k1, k2 } => Some(format!("radial:{k1}:{k2}")),
+            _ => Some("equidistant".to_owned()),
+        }
+    }
+}
+
+impl FacePipeline {
+    /// Creates a pipeline that runs on the machine. The display latches one orientation per field, as in the papers.
+    #[must_use]
+    pub const fn new(policy: FacePolicy) -> Self {
+        let source = FaceSource::PixelPlanes;
+        Self {
+            source,
+            policy,
+            latch: Latch::Field,
+            shading: Shading::Phong,
+            segmented: true,
+            falloff: Falloff::Linear,
+            lens: FaceLens::OfDisplay,
+        }
+    }
+
+    fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
+        let ports = machine.ports();
+        // The first GP is the master, and all others are slaves.
+        let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
+        if slaves.is_empty() {
+            return Err(too_few_gps(1));
+        }
+        Ok(CubeControlConfig {
+            host: ports.host,
+            master: *master,
+            slaves: slaves.to_vec(),
+            renderers: ports.renderers.clone(),
+            faces: self.faces(machine, pixels)?,
+            warped: WarpedLists::default(),
+        })
+    }
+
+    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, ConfigError> {
+        let display = display_of(machine.record())?.config();
+        let texels = display.timing.face_texels as u32;
+        // A face is a square picture, divided into the usual regions.
+        let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
+        let viewport = Viewport::new(grid, Lines::Frame)
+            .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
+        let picture =
+            Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
+        // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
+        let content = if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth };
+        if self.source == FaceSource::PixelPlanes {
+            region_has_room(machine.record(), content.words().into())?;
+        }
+        let memories = machine.ports().display()[..display.timing.display_memories as usize].to_vec();
+        Ok(Faces { memories, picture, content })
+    }
+
+    /// Returns the plan by which the host selects the next update of a display memory.
+    fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
+        let display = display_of(machine.record())?.config();
+        let projection = projection(display);
+        let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        // An ideal renderer has no delay, so its views are predicted for the next field.
+        let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
+        let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
+        if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
+            let structures = vec![true; setup.list.structures.len()].into();
+            let mut cycles = Cycles::new(updates, scan, All { structures });
+            return Ok(Box::new(move |number, now| cycles.next(number, now)));
+        }
+        if self.policy == FacePolicy::Full {
+            let mut full = Full::new(updates);
+            return Ok(Box::new(move |number, now| full.next(number, now)));
+        }
+        // Other policies distribute structures over several memories and work in cycles.
+        let timing =
+            PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
+        if self.policy == FacePolicy::Objects {
+            let policy = ByObjects::new(&setup.list, scan, &timing);
+            let mut cycles = Cycles::new(updates, scan, policy);
+            return Ok(Box::new(move |number, now| cycles.next(number, now)));
+        }
+        // Without warping, cells use a falloff of `None`.
+        let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
+        let policy = ByCells::new(&updates, &timing, falloff);
+        let mut cycles = Cycles::new(updates, scan, policy);
+        Ok(Box::new(move |number, now| cycles.next(number, now)))
+    }
+
+    const fn has_cells(self) -> bool {
+        matches!(self.policy, FacePolicy::Cells | FacePolicy::CellsWarped)
+    }
+}
+
+/// Returns the parameters of the policies after a check of their ranges.
+fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError> {
+    let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
+    timing.check().map_err(refused)?;
+    Ok(timing)
+}
+
+fn refused(error: PriorityError) -> ConfigError {
+    ConfigError::Board(error.to_string())
+}
+
+fn too_few_gps(found: u64) -> ConfigError {
+    ConfigError::Value { what: "n_gps of faces (a master and slaves)".to_owned(), expected: (2, 1_000), found }
+}
+
+fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, ConfigError> {
+    (record.display() as &dyn Any)
+        .downcast_ref()
+        .ok_or_else(|| ConfigError::Board(format!("faces need the display arp, found {}", record.display().name())))
+}
+
+/// Returns the projection of a cube face with its guard texels. The near and far planes come from the head-mounted
+/// display.
+fn projection(display: &ArpConfig) -> Mat4 {
+    let geometry = display.geometry();
+    let HmdConfig { near_m: near, far_m: far, .. } = HmdConfig::unc();
+    let scale = f64::from(geometry.texels - 2 * geometry.guard) / f64::from(geometry.texels);
+    let deep = far / (near - far);
+    let columns =
+        [[scale, 0.0, 0.0, 0.0], [0.0, scale, 0.0, 0.0], [0.0, 0.0, deep, -1.0], [0.0, 0.0, near * deep, 0.0]];
+    let [x, y, z, w] = columns.map(|column| Vec4::from_array(column.map(|v| v as f32)));
+    Mat4::from_cols(x, y, z, w)
+}
+
+/// Index of the display port that receives the head's orientations.
+const ORIENTATION_PORT: usize = 0;
+
+/// Connection from the host to the display that carries the head's orientations.
+///
+/// The first orientation is the head's initial orientation. Later ones follow tracker reports or are predicted.
+struct OrientationLine {
+    reports: ReportTimes,
+    poses: Poses,
+    latched: OrientationTiming,
+}
+
+impl fmt::Debug for OrientationLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OrientationLine").field("latched", &self.latched).finish_non_exhaustive()
+    }
+}
+
+impl HostLine for OrientationLine {
+    fn next(&self, after: Time) -> Option<Time> {
+        self.latched.next(after, |instant| (self.reports)(instant))
+    }
+
+    fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
+        let (known, aimed) = self.latched.predicted(now);
+        let turned = (self.poses)(known, aimed).orientation;
+        let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
+        vec![(ORIENTATION_PORT, Body::Words(orientation_message(rows)))]
+    }
+}
+
+impl Pipeline for FacePipeline {
+    fn name(&self) -> &'static str {
+        let [field, line, pixel] = self.names();
+        match self.latch {
+            Latch::Field => field,
+            Latch::Line => line,
+            Latch::Pixel => pixel,
+        }
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        let mut settings = vec![("shading", shading_value(self.shading))];
+        if self.source == FaceSource::Ideal {
+            settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
+        }
+        // Without a lens, the key for the lens is absent, so that names of older experiments stay valid.
+        settings.extend(self.lens.text().map(|lens| (LENS.name, KeyValue::Text(lens.into()))));
+        if self.has_cells() {
+            settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
+        }
+        if self.policy == FacePolicy::CellsWarped {
+            let (name, _) = Falloff::ALL[self.falloff as usize];
+            settings.push((WARP.name, KeyValue::Name(name)));
+        }
+        settings
+    }
+
+    fn eyes(&self) -> usize {
+        1
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::rendering_control_phong()
+    }
+
+    fn shading(&self) -> Shading {
+        self.shading
+    }
+
+    fn draws_faces(&self) -> bool {
+        true
+    }
+
+    /// Adapts the display to this variant: it must accept cube faces and use the variant's latch mode and lens. The
+    /// policy `Full` uses one display memory.
+    fn adapt(&self, config: MachineConfig) -> MachineConfig {
+        let mut config = config;
+        // Replace a display that takes no faces.
+        if config.displays.first().is_none_or(|display| !display.shows_cube_faces()) {
+            let display = match self.source {
+                FaceSource::PixelPlanes => ArpConfig::MACHINE,
+                FaceSource::Ideal => ArpConfig::IDEAL,
+            };
+            config.displays = vec![Box::new(display)];
+        }
+        // Set the latch mode and the lens, which belong to the variant.
+        if let Some(display) =
+            config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
+        {
+            display.latch = self.latch;
+            if let Some(lens) = self.lens.lens() {
+                display.lens = lens;
+            }
+            if self.policy == FacePolicy::Full {
+                display.timing.display_memories = 1;
+            }
+        }
+        config
+    }
+
+    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
+        if !self.has_cells() {
+            return Ok(None);
+        }
+        let side_m = priority_timing(config)?.cell_m;
+        let cut = if self.segmented {
+            SegmentedScene::segmented(scene, side_m)
+        } else {
+            SegmentedScene::whole(scene, side_m)
+        };
+        cut.map(Some).map_err(refused)
+    }
+
+    /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
+    ///
+    /// An ideal renderer uses no graphics processors and returns `None`.
+    fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
+        let is_warped = self.source == FaceSource::PixelPlanes && self.policy == FacePolicy::CellsWarped;
+        is_warped.then_some("moving the vertices of warped cells (0 in the table)")
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        self.plug_orientations(machine, setup);
+        if self.source == FaceSource::Ideal {
+            return self.plug_ideal_source(machine, setup);
+        }
+        let config = self.config(machine, setup.pixels)?;
+        // All slaves share recent views, because each of them transforms for the same faces.
+        let mut list = matte(&setup.list);
+        list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
+        let list = Arc::new(list);
+        let foreground = Priority::Foreground;
+        let plan = self.plan(machine, setup)?;
+        let gp = machine.processor(config.host, foreground);
+        machine.load(config.host, foreground, Box::pin(host(gp, config.clone(), setup.host, plan)));
+        let gp = machine.processor(config.master, foreground);
+        machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
+        // Each slave gets its share of the triangles.
+        for (index, node) in config.slaves.iter().enumerate() {
+            let gp = machine.processor(*node, foreground);
+            for (level, program) in slave(&gp, &config, config.share(&list, index), index) {
+                machine.load(*node, level, Box::pin(program));
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the updates of all display memories, in the order in which they are shown.
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let Ok(display) = display_of(record) else { return Vec::new() };
+        let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
+        let stages = record.stages();
+        let shown = ports.flat_map(|port| record.shown_by(*port)).filter(|shown| shown.at < end);
+        let mut pictures: Vec<PictureTimes> = match self.source {
+            FaceSource::PixelPlanes => shown.filter_map(|shown| swapped_in(&stages, shown.picture, shown.at)).collect(),
+            FaceSource::Ideal => shown.map(drawn_at_once).collect(),
+        };
+        pictures.sort_by_key(|times| (times.shown_at, times.picture));
+        pictures
+    }
+
+    fn can_discard_records(&self) -> bool {
+        true
+    }
+
+    /// Counts the fields since the first swap of any memory. Each field is shown with its own latched orientation.
+    fn turned_periods(&self, record: &Record, end: Time) -> u64 {
+        let first = record.observation().first_swap();
+        let after = record.display().period_at(end);
+        first.map_or(0, |first| after.since(first.min(after)))
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        match self.source {
+            FaceSource::PixelPlanes => {
+                "of translation: from the start of TRANSFORM of an update of any display memory on the first slave to the retrace at which it is swapped in"
+            }
+            FaceSource::Ideal => {
+                "of translation: from the instant at which an update of any display memory is drawn, in no time, to the retrace at which it is swapped in"
+            }
+        }
+    }
+
+    fn due_definition(&self) -> &'static str {
+        "an update is never due: until it is shown the old faces are looked up in the right direction, from the old place"
+    }
+
+    fn has_one_pose(&self) -> bool {
+        false
+    }
+
+    fn knows_when_seen(&self) -> bool {
+        self.source == FaceSource::Ideal
+    }
+}
+
+impl FacePipeline {
+    const fn names(self) -> [&'static str; 3] {
+        match self.source {
+            FaceSource::PixelPlanes => NAMES[self.policy as usize],
+            FaceSource::Ideal => IDEAL_NAMES,
+        }
+    }
+
+    /// Connects the line that carries orientations from the host to the display. Every renderer of faces needs this
+    /// line.
+    fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
+        let link = setup.host.link_span(ORIENTATION_WORDS);
+        if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {
+            let reports = Arc::clone(&setup.reports);
+            let poses = Arc::clone(&setup.poses);
+            machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
+        }
+    }
+
+    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let display = display_of(machine.record())?;
+        let scan = display.config().scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let ideal = IdealFaces {
+            plan: self.plan(machine, setup)?,
+            faces: Arc::new(self.faces(machine, setup.pixels)?),
+            list: Arc::new(matte(&setup.list)),
+            warped: WarpedLists::default(),
+            scan,
+            next: PictureNumber::FIRST,
+        };
+        machine.plug_host_line(Box::new(ideal));
+        Ok(())
+    }
+}
+
+/// Returns the display list without highlights.
+///
+/// The renderers shade a region with a single direction to the eye. On a cube face, this direction is the face's axis,
+/// so a highlight would jump at the border between two faces.
+fn matte(list: &DisplayList) -> DisplayList {
+    DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
+}
+
+/// Returns the times of an update that was drawn without delay.
+const fn drawn_at_once(shown: Shown) -> PictureTimes {
+    let drawn = shown.first_region_at;
+    PictureTimes {
+        picture: shown.picture,
+        view: ViewNumber::taken_for(shown.picture),
+        sampled_at: Some(drawn),
+        transform_at: drawn,
+        copied_at: Some(drawn),
+        shown_at: shown.at,
+        end: PictureResult::Shown,
+    }
+}
+
+/// Number of views that slave processors use at the same time: six faces of two updates.
+const VIEWS_AT_A_TIME: usize = 12;
