@@ -224,4 +224,4 @@ pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
 /// ```
 pub use pxpl5_measure::RasterOffsets;
 
-pub use pxpl5_measure::{picture, reproject, side_by_side};
+pub use pxpl5_measure::{DepthPicture, picture, reproject, reproject_with_depth, side_by_side};

@@ -130,7 +130,7 @@ class Experiment(Strict):
     """A pipeline on a machine with a scene.
 
     - ``pipeline``: a name of :func:`pipelines`, or a :class:`PolicyPipeline`.
-    - ``scene``: a built-in name, the path of a model file (PLY, OBJ, PDB), or a :class:`Scene`.
+    - ``scene``: a built-in name, the path of a model file (PLY, OBJ, STL, PDB), or a :class:`Scene`.
     - ``machine``: a preset or a :class:`Machine`; default: the one on which the pipeline was published.
     - ``head``: a :class:`Head`, or the name of a motion; default: the scene's own motion, followed without delay.
     - ``fields``: periods of the display to simulate, NTSC fields of 1/60 s; default 120.

@@ -16,7 +16,7 @@ def _scene(scene: str | PathLike[str] | Scene) -> Scene:
     if isinstance(scene, Scene):
         return scene
     name = fspath(scene)
-    is_file = "/" in name or name.lower().endswith((".ply", ".obj", ".pdb", ".ent"))
+    is_file = "/" in name or name.lower().endswith((".ply", ".obj", ".stl", ".gltf", ".glb", ".pdb", ".ent"))
     return Scene.load(name) if is_file else Scene.builtin(name)
 
 

@@ -293,7 +293,7 @@ fn bad_model_files_are_refused_with_file_and_place() {
         ("infinite.ply", ply("inf 0 0", "2", 1), "line 10: expected a coordinate between -1e15 and 1e15, found inf"),
         ("huge.ply", ply("1e30 0 0", "2", 1), "coordinate"),
         ("none.ply", ply("0 0 0", "2", 0), "at least one triangle"),
-        ("notes.txt", whole.clone(), ".ply, .obj or .pdb"),
+        ("notes.txt", whole.clone(), ".ply, .obj, .stl, .gltf, .glb or .pdb"),
     ];
     for (name, contents, says) in cases {
         let folder = Folder::new(name);

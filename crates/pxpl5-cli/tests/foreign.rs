@@ -27,16 +27,16 @@ fn what_a_reader_makes_of_a_model_is_told() {
 #[test]
 fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     let folder = Folder::new("foreign-format");
-    folder.file("model.stl", "solid");
-    for name in ["model.stl", "./model.stl", "model.STL"] {
+    for name in ["model.3ds", "./model.3ds", "model.3DS"] {
         folder.file(name, "solid");
         let run = folder.run(&["run", "--pipeline", "slats", "--scene", name]);
         let said = err(&run);
-        assert!(!run.status.success() && said.contains("expected an extension .ply, .obj or .pdb"), "{said}");
+        let expected = "expected an extension .ply, .obj, .stl, .gltf, .glb or .pdb";
+        assert!(!run.status.success() && said.contains(expected), "{said}");
     }
-    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.gltf"]);
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "there-is-none.fbx"]);
     assert!(
-        !run.status.success() && err(&run).contains("there-is-none.gltf: expected an extension .ply"),
+        !run.status.success() && err(&run).contains("there-is-none.fbx: expected an extension .ply"),
         "{}",
         err(&run)
     );
@@ -51,6 +51,30 @@ fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     folder.file("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
     let run = folder.run(&["run", "--pipeline", "slats", "--scene", "point.obj"]);
     assert!(!run.status.success() && err(&run).contains("point.obj: expected at least one triangle with an area"));
+}
+
+/// A build without the reader of glTF says how to get it. A build with the reader reads the file.
+#[test]
+fn a_gltf_file_is_read_or_the_feature_that_reads_it_is_named() {
+    let folder = Folder::new("foreign-gltf");
+    folder.file("model.gltf", r#"{"asset": {"version": "2.0"}}"#);
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "model.gltf"]);
+    let expected = match cfg!(feature = "gltf") {
+        true => "model.gltf: expected at least one triangle, found none",
+        false => "found one built without gltf; build it with --features gltf",
+    };
+    assert!(!run.status.success() && err(&run).contains(expected), "{}", err(&run));
+    let help = folder.run(&["run", "--help"]);
+    assert!(String::from_utf8_lossy(&help.stdout).contains("in a build with --features gltf"));
+}
+
+#[test]
+fn an_stl_file_is_a_scene() {
+    let folder = Folder::new("foreign-stl");
+    let corners = ["0 0 0", "1 0 0", "0 1 0"].map(|corner| format!("vertex {corner}\n")).concat();
+    folder.file("model.stl", format!("solid\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\nendsolid\n"));
+    let run = folder.run(&["run", "--pipeline", "slats", "--scene", "model.stl", "--fields", "40", "--json"]);
+    assert!(run.status.success(), "{}", err(&run));
 }
 
 /// Returns the text of a recording with a hundred poses per second for three seconds. It has no pose between 0.28 s and

@@ -2,7 +2,7 @@
 //! expected pictures.
 
 use image::{Rgb, RgbImage};
-use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig};
+use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig, PanelNumbers};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, Scan};
 use pxpl5_wire::{
@@ -292,6 +292,18 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
     ] {
         assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
     }
+    // The rules between numbers also hold for numbers without a table.
+    for (zero, name) in [
+        (PanelConfig { width: 0, ..PanelConfig::PAPERS }, "width"),
+        (PanelConfig { height: 0, ..PanelConfig::PAPERS }, "height"),
+        (still, "refresh_hz"),
+    ] {
+        let error = PanelNumbers::of(&zero).check("panel").expect_err("refused").to_string();
+        assert_eq!(error, format!("panel.{name}: expected 1 or more, found 0"));
+    }
+    let endless = PanelConfig { width: u64::MAX, height: u64::MAX, ..PanelConfig::PAPERS };
+    let error = PanelNumbers::of(&endless).check("panel").expect_err("refused").to_string();
+    assert!(error.starts_with("panel.width: expected at most 128 regions"), "{error}");
     let error = DisplayConfig::check(&still).expect_err("refused").to_string();
     assert!(error.starts_with("panel.refresh_hz") && error.contains('0') && error.contains("1000"), "{error}");
 }

@@ -87,6 +87,80 @@ fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() 
     }
 }
 
+/// Each number of a display is valid at both ends of its range, and refused one step beyond each end.
+#[test]
+fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_with_key_range_and_value() {
+    let whole = |least: &str, greatest: &str| format!("a number from {least} to {greatest}");
+    // Key, other numbers, both ends, a step beyond both ends, and the range in the error.
+    for (key, others, [least, greatest], [below, above], expected) in [
+        ("width", "height = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
+        ("height", "width = 100, ", ["1", "16384"], ["0", "16385"], whole("1", "16384")),
+        ("hz", "", ["1", "1000"], ["0", "1001"], whole("1", "1000")),
+        ("active", "", ["0.001", "1"], ["0", "1.001"], whole("0.001", "1")),
+        ("response_ms", "", ["0", "1000"], ["-1", "1000.001"], whole("0", "1000")),
+        ("ports", "", ["1", "8"], ["0", "9"], whole("1", "8")),
+        ("word_ns", "", ["1", "1000000"], ["0", "1000001"], whole("1", "1000000")),
+        ("bits", "", ["3", "24"], ["2", "25"], whole("3", "24")),
+        // A period of 100 Hz is 10 ms.
+        ("persistence_ms", "hz = 100, ", ["0", "10"], ["-1", "10.001"], "0 to 10000, a period of 100 Hz".to_owned()),
+    ] {
+        for value in [least, greatest] {
+            plan(&format!("display = {{ {others}{key} = {value} }}\n"));
+        }
+        for value in [below, above] {
+            let found = refusal(&format!("{RC}display = {{ {others}{key} = {value} }}\n"));
+            // A negative number is refused before its range is looked up.
+            let range = if value.starts_with('-') { "a number from 0 on" } else { &expected };
+            assert!(found.contains(&format!("display.{key}: ")), "{key} = {value}: {found}");
+            assert!(found.contains(&format!("expected {range}")), "{key} = {value}: {found}");
+        }
+    }
+    for (text, expected) in [
+        ("bits = 4", "panel.bits: expected a multiple of 3"),
+        ("hz = nan", "display.hz: expected a whole number from 0 on, found nan"),
+        ("hz = 59.94", "display.hz: expected a whole number from 0 on, found 59.94"),
+        ("persistence_ms = inf", "display.persistence_ms: expected a number from 0 on in steps of 0.001, found inf"),
+        ("interlace = true, height = 481", "panel.height: expected an even number of interlaced lines, found 481"),
+        ("interlace = true, scan = \"global\"", "panel.interlace: expected 0: an interlaced scan is rolling"),
+        // 128 columns of regions are allowed only with one row of regions.
+        ("width = 16384, height = 129", "panel.width: expected at most 128 regions of 128 x 128"),
+    ] {
+        let found = refusal(&format!("{RC}display = {{ {text} }}\n"));
+        assert!(found.contains(expected), "{text}: {found}");
+    }
+    let head = "head.motion = \"pan:10\"\nhead.raster = \"rotation\"\nhead.reprojection.latency_us = ";
+    for latency in [0, 100_000] {
+        plan(&format!("{head}{latency}\n"));
+    }
+    for latency in [-1, 100_001] {
+        let found = refusal(&format!("{RC}{head}{latency}\n"));
+        let expected =
+            format!("head.reprojection.latency_us: expected a whole number from 0 to 100000, found {latency}");
+        assert!(found.contains(&expected), "{found}");
+    }
+}
+
+/// A pipeline either draws for a progressive panel or says by its name what it needs.
+#[test]
+fn every_pipeline_draws_for_a_panel_or_names_itself_and_its_need() {
+    let mut refused = Vec::new();
+    for entry in pxpl5_run::Registry::of_papers().pipelines() {
+        let text =
+            format!("pipeline = {:?}\nscene = \"full-screen:2\"\ndisplay = \"panel\"\nfields = 20\n", entry.name);
+        let error = match ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()) {
+            Err(error) => error.to_string(),
+            Ok(plan) => match plan.experiment(plan.load_scene().expect("built in")).run() {
+                Ok(_) => continue,
+                Err(error) => error.to_string(),
+            },
+        };
+        assert!(error.contains(entry.name), "{}: {error}", entry.name);
+        assert!(error.contains("panel"), "{}: {error}", entry.name);
+        refused.push(entry.name);
+    }
+    assert!(refused.contains(&"slats") && !refused.contains(&"rendering-control"), "{refused:?}");
+}
+
 #[test]
 fn a_pipeline_that_needs_interlace_says_so_by_name() {
     for pipeline in ["slats", "frameless", "jitp-field"] {

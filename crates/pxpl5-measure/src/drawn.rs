@@ -15,6 +15,13 @@ pub(crate) struct Moment {
     pub(crate) measured_at: Option<Time>,
 }
 
+impl Moment {
+    /// Returns true if two moments give the same picture.
+    pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
+        self.pose == other.pose && self.objects_at == other.objects_at
+    }
+}
+
 /// The source of a displayed pixel.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {

@@ -8,6 +8,7 @@ use crate::raster::{offset, pose_of_field};
 use crate::registration::{Evaluator, middle};
 use crate::reproject::Move;
 use crate::reprojector::Reprojector;
+use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_run::{Cause, Estimator, Every, FinalResults, HeadViews, Reprojection, Warp};
 use pxpl5_sim::Time;
@@ -108,8 +109,7 @@ impl Showing {
         const PERIODS: u64 = 60_000;
         let seconds = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO).as_ms() * 1e-3;
         let periods_per_s = PERIODS as f64 / seconds;
-        let (_, distance) = display.rows_lit(PeriodNumber::FIRST);
-        let [columns, lines] = [surface.width, surface.height / distance];
+        let [columns, lines] = [surface.width, surface.height / Rows::lit(display, PeriodNumber::FIRST).distance];
         // Strips follow each other in the direction of the scan.
         let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
         // A global scan lights all pixels at once, so the device can use only one pose per period.

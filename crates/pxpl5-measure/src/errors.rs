@@ -1,6 +1,7 @@
 //! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
 
 use crate::percentiles::Percentiles;
+use crate::rows::Rows;
 use pxpl5_run::{Raster, Reprojection, number_or_nan};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
@@ -79,17 +80,7 @@ pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
 /// Returns the evaluated pixels of a display period in scan order, each with the time at which it is lit.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
-    let Some(surface) = display.surfaces().first() else { return Vec::new() };
-    let (first_row, row_distance) = display.rows_lit(period);
-    let place = |i: u32, size: u32| (2 * i + 1) * size / (2 * GRID);
-    let mut pixels = Vec::new();
-    for j in 0..GRID {
-        // Move the row to the nearest line above that this field lights.
-        let y = place(j, surface.height) / row_distance * row_distance + first_row;
-        for x in (0..GRID).map(|i| place(i, surface.width)) {
-            pixels.extend(display.lights(0, x, y, period).map(|at| (x, y, at)));
-        }
-    }
+    let mut pixels = spread(display, period, (GRID, GRID));
     // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
     pixels.sort_by_key(|(_, _, at)| *at);
     pixels
@@ -100,11 +91,17 @@ const LATTICE: (u32, u32) = (16, 12);
 
 /// Returns the pixels of [`LATTICE`] in a display period, each with the time at which it is lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
+    spread(display, period, LATTICE)
+}
+
+/// Returns pixels that are spread evenly over columns and rows of a picture, each with the time at which it is lit.
+fn spread(display: &dyn Display, period: PeriodNumber, (columns, rows): (u32, u32)) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
-    let (first_row, distance) = display.rows_lit(period);
+    let lit = Rows::lit(display, period);
     let place = |i: u32, of: u32, size: u32| (2 * i + 1) * size / (2 * of);
-    let rows = (0..LATTICE.1).map(|j| place(j, LATTICE.1, surface.height) / distance * distance + first_row);
-    let places = rows.flat_map(|y| (0..LATTICE.0).map(move |i| (place(i, LATTICE.0, surface.width), y)));
+    // Move each row to a row that this period lights.
+    let rows = (0..rows).map(|j| lit.beside(place(j, rows, surface.height)));
+    let places = rows.flat_map(|y| (0..columns).map(move |i| (place(i, columns, surface.width), y)));
     places.filter_map(|(x, y)| Some((x, y, display.lights(0, x, y, period)?))).collect()
 }
 

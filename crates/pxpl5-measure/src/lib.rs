@@ -6,7 +6,7 @@
 //! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
 //! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
-//! | What does a device do that moves pictures to the newest pose? | [`EyeReport`], [`reproject`] |
+//! | What does a device do that moves pictures to the newest pose? | [`EyeReport`], [`reproject`], [`reproject_with_depth`] |
 //! | How busy was each board, and what does the latency wait for? | [`Utilisation`], [`CriticalPath`] |
 //! | All results as numbers with units | [`Report`], [`Measure`] |
 //!
@@ -18,6 +18,7 @@ mod budget;
 mod causes;
 mod content;
 mod critical_path;
+mod depth_warp;
 mod distribution;
 mod drawn;
 mod error_sum;
@@ -41,6 +42,7 @@ mod report;
 mod reproject;
 mod reprojector;
 mod resource;
+mod rows;
 mod screen;
 mod shown;
 mod step_sum;
@@ -54,6 +56,7 @@ mod utilisation;
 pub use budget::{Budget, tracking_and_rendering_ms};
 pub use causes::{ErrorCauses, ErrorPart};
 pub use critical_path::{CriticalPath, PICTURES_FOLLOWED, PathPart};
+pub use depth_warp::{DepthPicture, reproject_with_depth};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};
 pub use eye_report::{EyeReport, ReprojectionReport};
 pub use faces_report::{FacesReport, MemoryReport};

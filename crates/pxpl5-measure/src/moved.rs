@@ -4,6 +4,7 @@ use crate::content::Content;
 use crate::drawn::Drawn;
 use crate::registration::{Evaluator, Warped, middle};
 use crate::reproject::Move;
+use crate::rows::Rows;
 use crate::shown::{Seen, Shown};
 use glam::DVec2;
 use pxpl5_run::{FinalResults, Warp};
@@ -49,7 +50,7 @@ pub(crate) fn moved(
         };
         let Some((content, source)) = source(evaluator, by, now, &drawn, target, &mut last) else { return last };
         last = Moved::Shows(content, drawn);
-        let next = pixel_at(&evaluator.view, source, run.record.display().rows_lit(field));
+        let next = pixel_at(&evaluator.view, source, Rows::lit(run.record.display(), field));
         if next == pixel {
             break;
         }
@@ -91,8 +92,8 @@ fn source(
 }
 
 /// Returns the pixel at a position, in the nearest row that its field lights.
-fn pixel_at(view: &HmdView, place: DVec2, (first_row, distance): (u32, u32)) -> [u32; 2] {
+fn pixel_at(view: &HmdView, place: DVec2, rows: Rows) -> [u32; 2] {
     let last = view.centre_px() * 2.0 - DVec2::ONE;
     let inside = place.floor().clamp(DVec2::ZERO, last);
-    [inside.x as u32, inside.y as u32 / distance * distance + first_row]
+    [inside.x as u32, rows.beside(inside.y as u32)]
 }

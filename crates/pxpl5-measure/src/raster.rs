@@ -1,6 +1,7 @@
 //! Raster offset of VDRT: the display shifts the picture during scan-out to correct the drawn head pose.
 
 use crate::picture_mover::PictureMover;
+use crate::rows::Rows;
 use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
@@ -127,8 +128,7 @@ impl<'a> RasterOffsets<'a> {
             return;
         }
         let offset = self.field(field);
-        let (first_row, row_distance) = self.display.rows_lit(field);
-        for y in (first_row..screen.height()).step_by(row_distance as usize) {
+        for y in Rows::lit(self.display, field).of(screen.height()) {
             for x in 0..screen.width() {
                 let pixel = match offset {
                     Some(offset) => self.shifted_pixel(screen, offset, field, [x, y]),
@@ -147,15 +147,14 @@ impl<'a> RasterOffsets<'a> {
         field: PeriodNumber,
         [x, y]: [u32; 2],
     ) -> Rgb<u8> {
-        let (first_row, row_distance) = self.display.rows_lit(field);
+        let rows = Rows::lit(self.display, field);
         // The shift depends on the time at which the beam lights the pixel.
         let at = self.display.lights(0, x, y, field).unwrap_or(Time::ZERO);
         let shift = offset.shift_px(&self.view, at.0);
         // Stay within the rows of this field.
-        let row = (y - first_row) / row_distance;
-        let from = DVec2::new(f64::from(x) - shift.x, f64::from(row) - shift.y / f64::from(row_distance)).round();
+        let from = DVec2::new(f64::from(x) - shift.x, rows.number_at(f64::from(y) + 0.5 - shift.y)).round();
         let inside = from.x >= 0.0 && from.y >= 0.0;
-        let place = [from.x as u32, from.y as u32 * row_distance + first_row];
+        let place = [from.x as u32, rows.row(from.y as u32)];
         let pixel = inside.then(|| screen.get_pixel_checked(place[0], place[1])).flatten();
         pixel.copied().unwrap_or(Rgb([0; 3]))
     }
@@ -165,7 +164,7 @@ impl<'a> RasterOffsets<'a> {
 pub(crate) fn pose_of_field(run: &FinalResults<'_>, shown: &Shown, field: PeriodNumber) -> Option<Pose> {
     let display = run.record.display();
     let x = display.surfaces().first()?.width / 2;
-    let (y, _) = display.rows_lit(field);
+    let y = Rows::lit(display, field).first;
     match shown.drawn(run, [x, y], field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
         Drawn::Between { .. } | Drawn::AdvancedMotion(..) | Drawn::Faces(_) => None,

@@ -141,6 +141,12 @@ impl Evaluator {
         if is_hidden { Warped::Hidden } else { Warped::Seen(content, source) }
     }
 
+    /// Returns the depth of the content at a position of a picture, in metres along the axis of the view.
+    pub(crate) fn depth(&self, drawn: &Moment, place: DVec2) -> f64 {
+        let content = self.contents.place(&self.met(drawn, place), drawn.objects_at);
+        -drawn.pose.view_of(content).z
+    }
+
     /// Returns the point at which a ray meets the background of a picture. The background is a plane at the scene's
     /// distance.
     fn on_background(&self, drawn: &Moment, now: &Pose, ahead: DVec3) -> Option<Content> {

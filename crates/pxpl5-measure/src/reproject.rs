@@ -1,5 +1,6 @@
 //! Moves pictures to another pose: computes the source of each pixel, and copies the pixels.
 
+use crate::rows::Rows;
 use glam::{DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_run::Warp;
@@ -43,15 +44,12 @@ impl Move {
     }
 }
 
-/// Rows of a picture that belong to one field: the first row, and the distance to the next row.
-pub(crate) type Rows = (u32, u32);
-
 /// Writes some pixels of a row, each copied from a position of the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
     source: &RgbImage,
-    (first_row, distance): Rows,
+    rows: Rows,
     (y, xs): (u32, Range<u32>),
     place: impl Fn(u32) -> Option<DVec2>,
     out: &mut RgbImage,
@@ -70,19 +68,11 @@ pub(crate) fn fill_row(
             continue;
         };
         // An interlaced picture has only the rows of its field. Take the nearest of these rows.
-        let row =
-            if distance == 1 { from.y as u32 } else { nearest_row(from.y, (first_row, distance), source.height()) };
+        let row = if rows == Rows::ALL { from.y as u32 } else { rows.nearest(from.y, source.height()) };
         let at = (row as usize * source.width() as usize + from.x as usize) * 3;
         target.copy_from_slice(&pixels[at..at + 3]);
     }
     empty
-}
-
-/// Returns the row of a field that is nearest to a vertical position.
-fn nearest_row(y: f64, (first_row, distance): Rows, height: u32) -> u32 {
-    let number = (y - 0.5 - f64::from(first_row)) / f64::from(distance);
-    let last = (height - 1 - first_row) / distance;
-    ((number.round().max(0.0) as u32).min(last)) * distance + first_row
 }
 
 /// Writes some pixels of one row of a moved picture. Returns the number of pixels without a source.
@@ -134,7 +124,7 @@ pub fn reproject(
     let moved = Move::between(by, view, drawn_for, now);
     let mut out = RgbImage::from_pixel(picture.width(), picture.height(), Rgb([0; 3]));
     let rows = 0..picture.height();
-    let empty = rows.map(|y| move_row(picture, (0, 1), (y, 0..picture.width()), (view, &moved), &mut out)).sum();
+    let empty = rows.map(|y| move_row(picture, Rows::ALL, (y, 0..picture.width()), (view, &moved), &mut out)).sum();
     Some((out, empty))
 }
 
@@ -186,13 +176,5 @@ mod tests {
         }
         // The middle row has as many empty columns as the tangents leave out. All other rows have at least as many.
         assert!(counted > 20 && empty >= counted * 480, "{counted} {empty}");
-    }
-
-    #[test]
-    fn rows_of_a_field_come_from_the_same_field() {
-        for (y, rows, expected) in [(10.5, (0, 2), 10), (11.4, (0, 2), 10), (11.6, (0, 2), 12), (10.5, (1, 2), 11)] {
-            assert_eq!(nearest_row(y, rows, 480), expected, "{y} {rows:?}");
-        }
-        assert_eq!([nearest_row(-3.0, (1, 2), 480), nearest_row(480.0, (0, 2), 480)], [1, 478]);
     }
 }

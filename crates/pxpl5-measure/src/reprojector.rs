@@ -1,5 +1,6 @@
 //! Poses to which a device moves pictures. Each part of a scan (field, strip or line) uses the newest pose.
 
+use crate::rows::Rows;
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
@@ -94,10 +95,10 @@ fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> O
     let sideways = matches!(scan, Scan::Right | Scan::Left);
     let whole = [0, u32::MAX];
     let [xs, ys] = if sideways { [[from, to], whole] } else { [whole, [from, to]] };
-    let (first_row, distance) = display.rows_lit(field);
+    let rows = Rows::lit(display, field);
     // A scan lights pixels monotonically, so the corners of the part have the first and the last light.
     let corners = xs.into_iter().flat_map(|x| ys.into_iter().map(move |y| [x.min(size[0] - 1), y.min(size[1] - 1)]));
-    let lights = corners.filter_map(|[x, y]| display.lights(0, x, y / distance * distance + first_row, field));
+    let lights = corners.filter_map(|[x, y]| display.lights(0, x, rows.beside(y), field));
     let all: Vec<Time> = lights.collect();
     Some((*all.iter().min()?, *all.iter().max()?))
 }

@@ -40,7 +40,7 @@ impl Scene {
         py.detach(|| scene::builtin(&name)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Loads a model file (PLY, OBJ or PDB). The extension determines the format. The model is moved and scaled so that
+    /// Loads a model file (PLY, OBJ, STL or PDB). The extension determines the format. The model is moved and scaled so that
     /// both eyes see all of it. With ``fit=False``, the model keeps its coordinates, which are then in metres.
     ///
     /// Raises :class:`pxpl5.SettingError` with the file, the position in the file, and the expected and the found text.

@@ -45,7 +45,7 @@ pub enum LoadError {
         found: &'static str,
     },
     /// The file's extension is unknown, so no importer reads the file.
-    #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
+    #[error("{file}: expected an extension .ply, .obj, .stl, .gltf, .glb or .pdb, found {found:?}")]
     UnknownFormat {
         /// Path of the model file, as the caller gave it.
         file: String,
@@ -125,6 +125,31 @@ pub enum LoadError {
         expected: usize,
         /// The index as it is written in the file.
         found: i64,
+    },
+    /// A part of a glTF file breaks the rules of the format, or needs something that the importer cannot read.
+    #[error("{file}: {part}: expected {expected}, found {found}")]
+    Part {
+        /// Name of the model file, as the caller gave it.
+        file: String,
+        /// Path of the part in the JSON of the file, for example `meshes[0].primitives[1].indices`.
+        part: String,
+        /// Description of the content that the importer can read.
+        expected: String,
+        /// Description of the content of the file.
+        found: String,
+    },
+    /// The importer of the format is not part of this program.
+    #[error(
+        "{file}: expected a program with the feature {feature} for {format} files, found one built without {feature}; \
+         build it with --features {feature}"
+    )]
+    NotBuilt {
+        /// Name of the model file, as the caller gave it.
+        file: String,
+        /// Name of the format.
+        format: &'static str,
+        /// Name of the feature that has the importer.
+        feature: &'static str,
     },
     /// A coordinate is NaN, infinite, or larger than [`crate::config::MAX_COORDINATE`] in absolute value.
     #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]

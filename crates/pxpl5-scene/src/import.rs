@@ -1,7 +1,9 @@
-//! Readers of model files in the formats PLY, OBJ and PDB.
+//! Readers of model files in the formats PLY, OBJ, STL, glTF and PDB.
 
 #[cfg(feature = "files")]
 mod files;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod mesh;
 mod model;
 mod obj;
@@ -10,6 +12,7 @@ mod placement;
 mod ply;
 mod polygon;
 mod source;
+mod stl;
 
 use std::io::Read;
 use std::path::Path;
@@ -58,6 +61,13 @@ pub enum Format {
     /// Wavefront OBJ file with the statements `v` (with or without colours), `vn`, `f` and `s`. All other statements
     /// are ignored. A line that ends in `\` continues on the next line.
     Obj,
+    /// STL file, ASCII or binary. Each triangle is flat and has its own three vertices. The normals of the file are not
+    /// used, because the corners determine them.
+    Stl,
+    /// glTF 2.0 file, as JSON (`.gltf`) or binary (`.glb`). The triangles, strips and fans of the default scene are read,
+    /// with the transforms of their nodes. Colours are the base colours of materials times the colours of vertices.
+    /// Textures, skins, morph targets and animations are not read. The format needs the feature `gltf`.
+    Gltf,
     /// Protein Data Bank file. The `ATOM` and `HETATM` records of its first model become spheres. If an atom has
     /// alternate locations, only the first is used.
     Pdb,
@@ -78,6 +88,8 @@ impl Format {
         match extension.to_ascii_lowercase().as_str() {
             "ply" => Some(Format::Ply),
             "obj" => Some(Format::Obj),
+            "stl" => Some(Format::Stl),
+            "gltf" | "glb" => Some(Format::Gltf),
             "pdb" | "ent" => Some(Format::Pdb),
             _ => None,
         }
@@ -107,22 +119,25 @@ pub fn placed_from_reader(
     name: &str,
     placement: Placement,
 ) -> Result<Scene, LoadError> {
-    read_placed(reader, 0, format, name, placement)
+    read_placed(reader, 0, format, (name, None), placement)
 }
 
-/// Reads a model as [`placed_from_reader`] does. `size` is its expected number of bytes, for which memory is reserved.
+/// Reads a model as [`placed_from_reader`] does.
+///
+/// `size` is the expected number of bytes of the model, for which memory is reserved. `folder` is the folder of the
+/// model's file, and `None` for a model without a file.
 fn read_placed(
     reader: impl Read,
     size: u64,
     format: Format,
-    name: &str,
+    (name, folder): (&str, Option<&Path>),
     placement: Placement,
 ) -> Result<Scene, LoadError> {
     // Read one byte beyond the limit, so that a larger file can be detected.
     let mut bytes = Vec::with_capacity(size.min(MAX_FILE_BYTES) as usize + 1);
     let mut limited = reader.take(MAX_FILE_BYTES + 1);
     limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
-    match read(&bytes, format, name, placement)? {
+    match read(&bytes, format, (name, folder), placement)? {
         Content::Scene(scene) => Ok(*scene),
         Content::Mesh(model) => {
             // Free the file's bytes before the scene is made.
@@ -159,7 +174,7 @@ pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, Loa
 ///
 /// The same as [`from_bytes`].
 pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
-    match read(bytes, format, name, placement)? {
+    match read(bytes, format, (name, None), placement)? {
         Content::Mesh(model) => model.into_scene(name, bytes.len(), placement),
         Content::Scene(scene) => Ok(*scene),
     }
@@ -172,10 +187,17 @@ enum Content {
     Scene(Box<Scene>),
 }
 
-fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Content, LoadError> {
-    let source = Source { name, bytes };
-    // Reject unsuitable bytes before any parser reads them.
-    source.check_is_bytes_of_text()?;
+fn read(
+    bytes: &[u8],
+    format: Format,
+    (name, folder): (&str, Option<&Path>),
+    placement: Placement,
+) -> Result<Content, LoadError> {
+    let source = Source { name, bytes, folder };
+    // Reject unsuitable bytes before any parser reads them. The header of a binary STL file may have any bytes.
+    if format != Format::Stl {
+        source.check_is_bytes_of_text()?;
+    }
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
     }
@@ -185,6 +207,11 @@ fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Resul
     Ok(match format {
         Format::Ply => Content::Mesh(ply::read(&source)?),
         Format::Obj => Content::Mesh(obj::read(&source)?),
+        Format::Stl => Content::Mesh(stl::read(&source)?),
+        #[cfg(feature = "gltf")]
+        Format::Gltf => Content::Mesh(gltf::read(&source)?),
+        #[cfg(not(feature = "gltf"))]
+        Format::Gltf => return Err(LoadError::NotBuilt { file: name.to_owned(), format: "glTF", feature: "gltf" }),
         Format::Pdb => Content::Scene(Box::new(pdb::read(&source, placement)?)),
     })
 }

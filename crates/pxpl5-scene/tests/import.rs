@@ -354,9 +354,9 @@ fn paths_that_lead_to_no_model_are_refused() {
     assert!(matches!(load(&directory), Err(LoadError::NotAFile { .. })));
     assert!(matches!(load(&folder), Err(LoadError::NotAFile { .. })));
     assert!(matches!(load(folder.join("missing.obj")), Err(LoadError::Io { .. })));
-    let strange = folder.join("model.stl");
+    let strange = folder.join("model.3ds");
     std::fs::write(&strange, "solid").expect("a temporary file");
-    assert!(matches!(load(&strange), Err(LoadError::UnknownFormat { found, .. }) if found == "stl"));
+    assert!(matches!(load(&strange), Err(LoadError::UnknownFormat { found, .. }) if found == "3ds"));
     let good = folder.join("SQUARE.OBJ");
     std::fs::write(&good, format!("{SQUARE_OBJ}f 1 2 3 4\n")).expect("a temporary file");
     assert_square(&load(&good).expect("a square"));

@@ -92,9 +92,14 @@ impl PanelNumbers {
         let wrong = |name: &str, expected: String, found: String| {
             Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
         };
+        for (name, number) in [("width", self.width), ("height", self.height), ("refresh_hz", self.refresh_hz)] {
+            if number == 0 {
+                return wrong(name, "1 or more".to_owned(), "0".to_owned());
+            }
+        }
         let size = u64::from(REGION_SIZE);
         // Firmware numbers regions with a fixed number of bits.
-        let regions = self.width.div_ceil(size) * self.height.div_ceil(size);
+        let regions = self.width.div_ceil(size).saturating_mul(self.height.div_ceil(size));
         if regions > MOST_REGIONS {
             let expected = format!("at most {MOST_REGIONS} regions of {size} x {size}, as many as firmware can number");
             return wrong("width", expected, format!("{regions} ({} x {} pixels)", self.width, self.height));

@@ -55,25 +55,28 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// An LCD panel for one eye, as in headsets of 2019. A short flash lights the panel after all its pixels were
-    /// written.
+    /// An assumed LCD panel for one eye, with numbers between those of two headsets of 2019. A short flash lights the
+    /// panel after all its pixels were written.
+    ///
+    /// No single headset has these numbers. Oculus Rift S has this size at 80 Hz. Valve Index has this rate and flash,
+    /// but its 1440 x 1600 pixels have 156 regions, and firmware can number 128.
     pub struct LcdConfig {
         /// Width of the panel: visible pixels in each line.
-        width: 1280, "pixels", Published, 1280..=1280 in 1..=16_384, "data sheet of Oculus Rift S (2019): 1280 x 1440 for each eye. The 1440 x 1600 of Valve Index have 156 regions, more than firmware can number";
+        width: 1280, "pixels", Assumed, 1280..=1440 in 1..=16_384, "an assumed panel: 1280 x 1440 for each eye in Oculus Rift S (2019), 1440 x 1600 in Valve Index (2019), whose 156 regions are more than firmware can number";
         /// Height of the panel: visible lines.
-        height: 1440, "lines", Published, 1440..=1440 in 1..=16_384, "data sheet of Oculus Rift S (2019): 1280 x 1440 for each eye";
+        height: 1440, "lines", Assumed, 1440..=1600 in 1..=16_384, "an assumed panel: 1280 x 1440 for each eye in Oculus Rift S (2019), 1440 x 1600 in Valve Index (2019)";
         /// Number of scans of the panel per second.
-        refresh_hz: 120, "Hz", Published, 80..=144 in 1..=1000, "data sheet of Valve Index (2019): 80, 90, 120 and 144 Hz";
+        refresh_hz: 120, "Hz", Assumed, 80..=144 in 1..=1000, "an assumed panel: 80, 90, 120 and 144 Hz in Valve Index (2019), 80 Hz in Oculus Rift S (2019)";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=0 in 0..=1, "no headset of these years is interlaced";
         /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
-        scan: 1, "1", Published, 1..=1 in 0..=1, "data sheet of Valve Index (2019): global backlight illumination";
+        scan: 1, "1", Assumed, 1..=1 in 0..=1, "an assumed panel: global backlight illumination in Valve Index (2019)";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "without effect while the scan is global";
         /// Part of each period that passes before the flash lights the panel, in thousandths of the period.
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the flash begins when the panel is written and liquid crystals have settled";
         /// Time for which the backlight is on in each scan.
-        persistence_us: 330, "us", Published, 330..=530 in 0..=1_000_000, "data sheet of Valve Index (2019): 0.330 to 0.530 ms";
+        persistence_us: 330, "us", Assumed, 330..=530 in 0..=1_000_000, "an assumed panel: 0.330 to 0.530 ms in Valve Index (2019), depending on the rate";
         /// Time constant of the first-order lag with which a pixel's brightness follows the backlight.
         response_us: 0, "us", Assumed, 0..=0 in 0..=1_000_000, "the backlight switches at once; crystals settle before it";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
@@ -159,5 +162,5 @@ macro_rules! panel {
 
 panel!(HiResConfig, "hires", "high-resolution frame buffer of 1280 x 1024, progressive, 72 Hz (F89)");
 panel!(OledConfig, "oled-90", "rolling OLED of 1080 x 1200 at 90 Hz, 2 ms persistence (headsets of 2016)");
-panel!(LcdConfig, "lcd-120", "global LCD of 1280 x 1440 at 120 Hz, 0.33 ms persistence (headsets of 2019)");
+panel!(LcdConfig, "lcd-120", "assumed global LCD of 1280 x 1440 at 120 Hz, 0.33 ms persistence");
 panel!(PanelConfig, "panel", "a display of your own numbers (panel.width, panel.refresh_hz, ...)");

@@ -22,7 +22,10 @@ pub struct FileKey {
 /// Keys that exist for every registry of pipelines and displays.
 const COMMON: &[(&str, &str)] = &[
     ("title", "title of the experiment, for readers"),
-    ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
+    (
+        "scene",
+        "a built-in scene or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb), relative to the experiment file",
+    ),
     ("triangles", "decimate the scene to at most this number of primitives, with a similar shape"),
     (
         "fit",

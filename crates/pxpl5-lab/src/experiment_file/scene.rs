@@ -27,7 +27,7 @@ pub struct SceneChoice {
 
 impl SceneChoice {
     pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
-        let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .pdb)";
+        let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb)";
         let name = file.text("scene")?.ok_or(FileError::Missing { key: "scene", how })?;
         let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };

@@ -24,7 +24,7 @@ const APART: f64 = 25.0;
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
-    let source = Source { name: "1mbn.pdb", bytes: MYOGLOBIN };
+    let source = Source { name: "1mbn.pdb", bytes: MYOGLOBIN, folder: None };
     let atoms = read_atoms(&source).expect("pxpl5-scene: the stored molecule is sound");
     // Atoms are on the left, the ribbon of the same molecule on the right.
     let (centre, _) = bounding_sphere(atoms.iter().map(|a| (a.position, a.element.radius)));

@@ -39,7 +39,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
         return Err(LoadError::NotAFile { file, found });
     }
     let opened = File::open(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
-    read_placed(opened, metadata.len(), format, &file, placement)
+    read_placed(opened, metadata.len(), format, (&file, path.parent()), placement)
 }
 
 /// Returns the most helpful error for a path that has no known extension.

@@ -132,6 +132,8 @@ pub(super) struct Model {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
+    /// Number of bytes of other files that belong to the model. They count as part of the model's file.
+    pub(super) more_file_bytes: usize,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
 }
@@ -151,6 +153,7 @@ impl Model {
             detail: Detail::Normal,
             triangles: Vec::new(),
             warnings: Vec::new(),
+            more_file_bytes: 0,
             too_long: 0,
         }
     }
@@ -177,11 +180,15 @@ impl Model {
     /// Returns an error if the model needs too much memory for the size of its file. `more_triangles` is the number of
     /// triangles still to be read.
     pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), LoadError> {
-        let found = source.bytes.len()
-            + self.lists_bytes()
-            + self.corners.len() * TABLE_BYTES
-            + more_triangles * size_of::<[u32; 3]>();
-        check_memory(source.name, found, source.bytes.len())
+        self.check_reading_bytes(source, more_triangles.saturating_mul(size_of::<[u32; 3]>()))
+    }
+
+    /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes that
+    /// the reader needs in addition to the model.
+    pub(super) fn check_reading_bytes(&self, source: &Source<'_>, more: usize) -> Result<(), LoadError> {
+        let of_files = source.bytes.len() + self.more_file_bytes;
+        let found = of_files + self.lists_bytes() + self.corners.len() * TABLE_BYTES;
+        check_memory(source.name, found.saturating_add(more), of_files)
     }
 
     fn lists_bytes(&self) -> usize {
@@ -220,6 +227,7 @@ impl Model {
             ));
         }
         let warnings = std::mem::take(&mut self.warnings);
+        let file_bytes = file_bytes + self.more_file_bytes;
         // Remove unused vertices, because they would change the size and position of the model.
         if self.corners.is_empty() {
             self.remove_unused_points();

@@ -1,11 +1,16 @@
 //! The file being read: its name, its bytes, and functions that report errors with positions in the file.
 
+use std::path::Path;
+
 use crate::config::MAX_COORDINATE;
 use crate::error::{FilePlace, LoadError};
 
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) bytes: &'a [u8],
+    /// Folder of the file, in which files that belong to the model are searched. `None` if there is no file.
+    #[cfg_attr(not(feature = "gltf"), expect(dead_code, reason = "only a glTF model refers to other files"))]
+    pub(crate) folder: Option<&'a Path>,
 }
 
 impl<'a> Source<'a> {

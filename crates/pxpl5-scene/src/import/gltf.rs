@@ -1,0 +1,482 @@
+//! Reader of glTF 2.0 files. The library gltf-json parses the JSON. This module follows the nodes of the scene, and
+//! reads the primitives of their meshes.
+//!
+//! Indices and positions in buffers are checked when they are used, so that no file causes a panic.
+
+mod buffers;
+mod container;
+mod numbers;
+
+use glam::{DMat3, DMat4, DQuat, DVec3};
+use gltf_json::accessor::ComponentType;
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+use gltf_json::{Node, Root};
+
+use self::buffers::Buffers;
+use self::container::Chunks;
+use self::numbers::Numbers;
+use super::Source;
+use super::model::{Model, Places, counted, direction, push_with_slow_growth};
+use crate::config::{DEFAULT_COLOUR, MAX_COORDINATE};
+use crate::error::LoadError;
+
+/// Extensions that a file may require although the importer does not read them. They change only materials, textures
+/// and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can read.
+const HARMLESS: [&str; 6] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",
+    "KHR_lights_punctual",
+    "EXT_texture_webp",
+    "EXT_texture_avif",
+];
+const HARMLESS_PREFIX: &str = "KHR_materials_";
+
+/// Extensions that compress meshes, so that the file has no plain numbers.
+const COMPRESSION: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// A parsed file with its buffers.
+struct Document<'a> {
+    source: &'a Source<'a>,
+    root: Root,
+    buffers: Buffers<'a>,
+}
+
+pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+    let mut model = Model::new(Places::Single(Vec::new()));
+    let chunks = Chunks::of(source)?;
+    let parsed_bytes = chunks.parsed_bytes();
+    model.check_reading_bytes(source, parsed_bytes)?;
+    let root = chunks.parse(source)?;
+    check_version(source, &root)?;
+    check_extensions(source, &root)?;
+    let buffers = Buffers::of(source, &root, chunks.binary);
+    model.more_file_bytes = buffers.file_bytes;
+    let held = parsed_bytes + buffers.decoded_bytes;
+    let document = Document { source, root, buffers };
+    let mut reader = Reader { document: &document, held, model, skipped: 0, skinned: 0, has_targets: false };
+    reader.scene()?;
+    Ok(reader.finished())
+}
+
+fn part_error(
+    source: &Source<'_>,
+    part: impl Into<String>,
+    expected: impl Into<String>,
+    found: impl Into<String>,
+) -> LoadError {
+    LoadError::Part { file: source.name.to_owned(), part: part.into(), expected: expected.into(), found: found.into() }
+}
+
+fn check_version(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
+    let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
+    match needed.as_str() {
+        "2.0" => Ok(()),
+        // A later version 2.x without a least version can be read as 2.0.
+        later if later.starts_with("2.") && root.asset.min_version.is_none() => Ok(()),
+        other => Err(part_error(source, "asset.version", "2.0", super::source::excerpt(other))),
+    }
+}
+
+fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
+    for (number, name) in root.extensions_required.iter().enumerate() {
+        if HARMLESS.contains(&name.as_str()) || name.starts_with(HARMLESS_PREFIX) {
+            continue;
+        }
+        let expected = match COMPRESSION.contains(&name.as_str()) {
+            true => "a mesh without compression (other programs can decompress the file)",
+            false => "an extension of materials, textures or lights, or KHR_mesh_quantization",
+        };
+        let part = format!("extensionsRequired[{number}]");
+        return Err(part_error(source, part, expected, super::source::excerpt(name)));
+    }
+    Ok(())
+}
+
+/// Types of numbers that vectors may have. Types other than F32 need `KHR_mesh_quantization`, except for colours.
+const OF_VECTORS: [ComponentType; 5] =
+    [ComponentType::F32, ComponentType::I8, ComponentType::U8, ComponentType::I16, ComponentType::U16];
+const OF_INDICES: [ComponentType; 3] = [ComponentType::U8, ComponentType::U16, ComponentType::U32];
+
+struct Reader<'a> {
+    document: &'a Document<'a>,
+    /// Number of bytes of the parsed JSON and of decoded buffers.
+    held: usize,
+    model: Model,
+    /// Number of primitives that consist of points or lines.
+    skipped: usize,
+    /// Number of nodes whose meshes are deformed by a skin.
+    skinned: usize,
+    has_targets: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads all meshes of the default scene.
+    ///
+    /// The first scene replaces a missing default scene. A file without scenes gives all nodes that have no parent.
+    fn scene(&mut self) -> Result<(), LoadError> {
+        let Document { source, root, .. } = self.document;
+        let number = root.scene.map_or(0, |scene| scene.value());
+        let roots: Vec<usize> = match root.scenes.get(number) {
+            Some(scene) => scene.nodes.iter().map(|node| node.value()).collect(),
+            None if root.scene.is_some() => {
+                let found = format!("{} scenes", root.scenes.len());
+                return Err(part_error(source, "scene", format!("a scene with the index {number}"), found));
+            }
+            None => roots_of(&root.nodes),
+        };
+        // Nodes that wait, with the transform of their parent. A list instead of recursion allows any depth.
+        let mut waiting: Vec<(usize, DMat4)> = roots.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
+        let mut read = vec![false; root.nodes.len()];
+        while let Some((number, parent)) = waiting.pop() {
+            let Some(node) = root.nodes.get(number) else {
+                let found = format!("{} nodes", root.nodes.len());
+                return Err(part_error(source, format!("nodes[{number}]"), "a node with this index", found));
+            };
+            // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle has no end.
+            if std::mem::replace(&mut read[number], true) {
+                let found = "a second parent or a circle";
+                return Err(part_error(source, format!("nodes[{number}]"), "a node with at most one parent", found));
+            }
+            let to_world = parent * transform(source, number, node)?;
+            let children = node.children.iter().flatten().rev();
+            waiting.extend(children.map(|child| (child.value(), to_world)));
+            self.node(node, to_world)?;
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, node: &Node, to_world: DMat4) -> Result<(), LoadError> {
+        let Document { source, root, .. } = self.document;
+        let Some(number) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+        let Some(mesh) = root.meshes.get(number) else {
+            let found = format!("{} meshes", root.meshes.len());
+            return Err(part_error(source, format!("meshes[{number}]"), "a mesh with this index", found));
+        };
+        // The joints of a skin place a mesh, and its node does not. Without joints the mesh stays as it is.
+        let to_world = if node.skin.is_some() { DMat4::IDENTITY } else { to_world };
+        self.skinned += usize::from(node.skin.is_some());
+        for (of_mesh, primitive) in mesh.primitives.iter().enumerate() {
+            self.has_targets |= primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty());
+            self.primitive(&format!("meshes[{number}].primitives[{of_mesh}]"), primitive, to_world)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the triangles of a primitive.
+    fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), LoadError> {
+        let document = self.document;
+        let mode = match primitive.mode {
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+            Checked::Valid(_) => {
+                self.skipped += 1;
+                return Ok(());
+            }
+            Checked::Invalid => {
+                return Err(part_error(document.source, format!("{part}.mode"), "0 to 6", "another number"));
+            }
+        };
+        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
+        let Some(positions) = attribute(Semantic::Positions) else {
+            return Err(self.no_positions(part));
+        };
+        let positions = self.numbers(positions, &[3], &OF_VECTORS)?;
+        let normals =
+            attribute(Semantic::Normals).map(|normals| self.numbers(normals, &[3], &OF_VECTORS)).transpose()?;
+        let colours = attribute(Semantic::Colors(0)).map(|colours| self.numbers(colours, &[3, 4], &OF_VECTORS));
+        let colours = colours.transpose()?;
+        for (name, other) in [("NORMAL", &normals), ("COLOR_0", &colours)] {
+            if let Some(other) = other.as_ref().filter(|other| other.count != positions.count) {
+                let expected = format!("{} items, as many as POSITION", positions.count);
+                let found = other.count.to_string();
+                return Err(part_error(document.source, format!("{part}.attributes.{name}"), expected, found));
+            }
+        }
+        let indices = primitive.indices.map(|indices| self.numbers(indices.value(), &[1], &OF_INDICES)).transpose()?;
+        let base = self.base_colour(part, primitive, colours.is_some())?;
+        let vertices = PrimitiveVertices { positions, normals, colours, base, to_world, part };
+        let corners = Corners { indices, vertices: vertices.positions.count, mode };
+        // Nothing may be added before it is known that there is memory for all of it.
+        let flat = vertices.normals.is_none();
+        let triangles = corners.triangles(document.source, part)?;
+        let points = if flat { triangles.saturating_mul(3) } else { vertices.positions.count };
+        let more =
+            points.saturating_mul(BYTES_OF_POINT).saturating_add(triangles.saturating_mul(size_of::<[u32; 3]>()));
+        self.model.check_reading_bytes(document.source, self.held.saturating_add(more))?;
+        match flat {
+            true => self.push_flat(&vertices, &corners, triangles),
+            false => self.push_smooth(&vertices, &corners, triangles),
+        }
+    }
+
+    fn no_positions(&self, part: &str) -> LoadError {
+        let compressed = self.document.root.extensions_used.iter().find(|name| COMPRESSION.contains(&name.as_str()));
+        let found = compressed.map_or("none".to_owned(), |name| format!("none in a file that uses {name}"));
+        part_error(self.document.source, format!("{part}.attributes"), "POSITION", found)
+    }
+
+    /// Returns the numbers of an accessor.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the accessor does not exist, has no bytes, or has another type.
+    fn numbers(
+        &self,
+        accessor: usize,
+        components: &[usize],
+        kinds: &[ComponentType],
+    ) -> Result<Numbers<'a>, LoadError> {
+        Numbers::of(self.document, accessor, components, kinds)
+    }
+
+    /// Adds all vertices of a primitive with normals, and the triangles between them.
+    fn push_smooth(
+        &mut self,
+        vertices: &PrimitiveVertices<'_>,
+        corners: &Corners<'_>,
+        triangles: usize,
+    ) -> Result<(), LoadError> {
+        let first = self.model.places.len() as u32;
+        for vertex in 0..vertices.positions.count {
+            self.push(vertices, vertex)?;
+        }
+        for triangle in 0..triangles {
+            let corners = vertices.oriented(corners.triangle(self.document.source, vertices.part, triangle)?);
+            if is_triangle(corners) {
+                push_with_slow_growth(&mut self.model.triangles, corners.map(|corner| first + corner));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds each triangle of a primitive without normals with three vertices of its own. The format demands that such
+    /// triangles are flat.
+    fn push_flat(
+        &mut self,
+        vertices: &PrimitiveVertices<'_>,
+        corners: &Corners<'_>,
+        triangles: usize,
+    ) -> Result<(), LoadError> {
+        for triangle in 0..triangles {
+            let corners = vertices.oriented(corners.triangle(self.document.source, vertices.part, triangle)?);
+            if !is_triangle(corners) {
+                continue;
+            }
+            let first = self.model.places.len() as u32;
+            for corner in corners {
+                self.push(vertices, corner as usize)?;
+            }
+            push_with_slow_growth(&mut self.model.triangles, [first, first + 1, first + 2]);
+        }
+        Ok(())
+    }
+
+    /// Adds a vertex of a primitive to the model.
+    fn push(&mut self, vertices: &PrimitiveVertices<'_>, vertex: usize) -> Result<(), LoadError> {
+        let place = vertices.place(vertex);
+        if place.is_nan() || place.abs().max_element() > MAX_COORDINATE {
+            let part = format!("{}.attributes.POSITION", vertices.part);
+            let expected = format!("coordinates between -{MAX_COORDINATE:e} and {MAX_COORDINATE:e}");
+            let found = format!("({}, {}, {}) at vertex {vertex}", place.x, place.y, place.z);
+            return Err(part_error(self.document.source, part, expected, found));
+        }
+        let before = self.model.places.len();
+        // A list stays empty until the first value that differs from its default.
+        let normal = vertices.normal(vertex);
+        if normal != glam::Vec3::ZERO || !self.model.normals.is_empty() {
+            self.model.normals.resize(before, glam::Vec3::ZERO);
+            push_with_slow_growth(&mut self.model.normals, normal);
+        }
+        let colour = vertices.colour(vertex);
+        if colour != DEFAULT_COLOUR || !self.model.colours.is_empty() {
+            self.model.colours.resize(before, DEFAULT_COLOUR);
+            push_with_slow_growth(&mut self.model.colours, colour);
+        }
+        match &mut self.model.places {
+            Places::Single(places) => push_with_slow_growth(places, place.as_vec3()),
+            Places::Double(places) => push_with_slow_growth(places, place),
+        }
+        Ok(())
+    }
+
+    /// Returns the base colour of a primitive in linear light. `None` stands for [`DEFAULT_COLOUR`], the colour of a
+    /// primitive without a material and without colours of its vertices.
+    fn base_colour(&self, part: &str, primitive: &Primitive, has_colours: bool) -> Result<Option<[f64; 3]>, LoadError> {
+        let materials = &self.document.root.materials;
+        let Some(number) = primitive.material.map(|material| material.value()) else {
+            return Ok(has_colours.then_some([1.0; 3]));
+        };
+        let Some(material) = materials.get(number) else {
+            let found = format!("{} materials", materials.len());
+            let expected = format!("a material with the index {number}");
+            return Err(part_error(self.document.source, format!("{part}.material"), expected, found));
+        };
+        let [red, green, blue, _] = material.pbr_metallic_roughness.base_color_factor.0;
+        Ok(Some([red.into(), green.into(), blue.into()]))
+    }
+
+    fn finished(mut self) -> Model {
+        let root = &self.document.root;
+        let mut warn = |count: usize, noun: &str, what: &str| {
+            if count > 0 {
+                self.model.warnings.push(format!("{}: {what}", counted(count, noun)));
+            }
+        };
+        warn(self.skipped, "primitive", "points and lines are not read");
+        warn(root.textures.len(), "texture", "not read, so surfaces have the colours of materials and vertices");
+        warn(self.skinned, "skin", "not applied, so the mesh has the pose in which it was made");
+        warn(root.animations.len(), "animation", "not read");
+        warn(usize::from(self.has_targets), "mesh with morph targets", "the targets are not read");
+        self.model
+    }
+}
+
+/// Number of bytes of a point with its normal and its colour.
+const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
+
+/// Returns the nodes that are the child of no node.
+fn roots_of(nodes: &[Node]) -> Vec<usize> {
+    let mut is_child = vec![false; nodes.len()];
+    for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(is_child) = is_child.get_mut(child.value()) {
+            *is_child = true;
+        }
+    }
+    (0..nodes.len()).filter(|&node| !is_child[node]).collect()
+}
+
+/// Returns the transform from a node to its parent.
+fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, LoadError> {
+    if let Some(matrix) = node.matrix {
+        return Ok(DMat4::from_cols_array(&matrix.map(f64::from)));
+    }
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    let scale = node.scale.map_or(DVec3::ONE, vector);
+    let translation = node.translation.map_or(DVec3::ZERO, vector);
+    let rotation = match node.rotation {
+        None => DQuat::IDENTITY,
+        Some(rotation) => {
+            let quaternion = DQuat::from_array(rotation.0.map(f64::from));
+            if quaternion.length_squared() == 0.0 {
+                let part = format!("nodes[{number}].rotation");
+                return Err(part_error(source, part, "a quaternion of length 1", format!("{:?}", rotation.0)));
+            }
+            quaternion.normalize()
+        }
+    };
+    Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
+}
+
+/// Returns false for a triangle with a corner twice. Strips use such triangles to join their parts.
+fn is_triangle([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// The vertices of a primitive, with the transform from its node to the world.
+struct PrimitiveVertices<'a> {
+    positions: Numbers<'a>,
+    normals: Option<Numbers<'a>>,
+    colours: Option<Numbers<'a>>,
+    base: Option<[f64; 3]>,
+    to_world: DMat4,
+    part: &'a str,
+}
+
+impl PrimitiveVertices<'_> {
+    fn place(&self, vertex: usize) -> DVec3 {
+        self.to_world.transform_point3(DVec3::from_array(self.positions.vector(vertex)))
+    }
+
+    /// Returns the unit normal of a vertex in world coordinates, or zero if there is none.
+    ///
+    /// Normals are transformed by the matrix of cofactors, which is the transposed inverse times the determinant. It
+    /// exists for every transform. The determinant's sign is removed, so that a mirrored normal points outwards.
+    fn normal(&self, vertex: usize) -> glam::Vec3 {
+        let Some(normals) = &self.normals else { return glam::Vec3::ZERO };
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = DMat3::from_mat4(self.to_world);
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        let sign = if self.is_mirrored() { -1.0 } else { 1.0 };
+        direction(cofactors * DVec3::from_array(normals.vector(vertex)) * sign)
+    }
+
+    fn is_mirrored(&self) -> bool {
+        DMat3::from_mat4(self.to_world).determinant() < 0.0
+    }
+
+    /// Returns the corners of a triangle in anticlockwise order. A transform that mirrors reverses the order.
+    fn oriented(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
+        if self.is_mirrored() { [a, c, b] } else { [a, b, c] }
+    }
+
+    fn colour(&self, vertex: usize) -> [u8; 3] {
+        let Some(base) = self.base else { return DEFAULT_COLOUR };
+        let factor = self.colours.as_ref().map_or([1.0; 3], |colours| colours.vector(vertex));
+        std::array::from_fn(|part| encoded(base[part] * factor[part]))
+    }
+}
+
+/// Returns a component of a colour in linear light as 8 bits of sRGB, by the transfer function of IEC 61966-2-1.
+fn encoded(linear: f64) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let part = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
+    (part * 255.0 + 0.5) as u8
+}
+
+/// The corners of the triangles of a primitive.
+struct Corners<'a> {
+    /// `None` if the corners are all vertices in their order.
+    indices: Option<Numbers<'a>>,
+    vertices: usize,
+    mode: Mode,
+}
+
+impl Corners<'_> {
+    fn count(&self) -> usize {
+        self.indices.as_ref().map_or(self.vertices, |indices| indices.count)
+    }
+
+    /// Returns the number of triangles.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the corners do not make whole triangles, or if there are more vertices than 32 bits can number.
+    fn triangles(&self, source: &Source<'_>, part: &str) -> Result<usize, LoadError> {
+        let count = self.count();
+        if u32::try_from(self.vertices).is_err() {
+            let found = self.vertices.to_string();
+            return Err(part_error(source, part, "at most 4294967295 vertices", found));
+        }
+        match self.mode {
+            Mode::Triangles if count % 3 == 0 => Ok(count / 3),
+            Mode::Triangles => {
+                Err(part_error(source, part, "three corners for each triangle", format!("{count} corners")))
+            }
+            _ => Ok(count.saturating_sub(2)),
+        }
+    }
+
+    /// Returns the vertices of a triangle.
+    ///
+    /// # Errors
+    ///
+    /// Fails if a vertex does not exist.
+    fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], LoadError> {
+        // The order of the corners is that of section 3.7.2.1 of the specification.
+        let corners = match self.mode {
+            Mode::TriangleStrip => [n, n + 1 + n % 2, n + 2 - n % 2],
+            Mode::TriangleFan => [n + 1, n + 2, 0],
+            _ => [3 * n, 3 * n + 1, 3 * n + 2],
+        };
+        let mut vertices = [0; 3];
+        for (vertex, corner) in vertices.iter_mut().zip(corners) {
+            let index = self.indices.as_ref().map_or(corner, |indices| indices.number(corner, 0) as usize);
+            if index >= self.vertices {
+                let expected = format!("an index of one of {} vertices", self.vertices);
+                return Err(part_error(source, format!("{part}.indices"), expected, index.to_string()));
+            }
+            *vertex = index as u32;
+        }
+        Ok(vertices)
+    }
+}
