@@ -141,7 +141,7 @@ impl Pipeline for Frameless {
         let runs_code = machine.processor(master, Priority::Foreground).runs_code();
         let batch = self.batch(machine.record(), whole_pass(setup), runs_code);
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
-        let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
+        let config = config(self.name(), machine.record(), schedule, self.layout(), setup.pixels)?;
         let config = JitpConfig { aim: setup.aim, ..config };
         load(machine, setup, &config);
         Ok(())

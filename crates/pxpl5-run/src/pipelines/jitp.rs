@@ -55,7 +55,7 @@ impl Jitp {
     fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, ConfigError> {
         let schedule =
             DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
-        config(record, schedule, self.layout(), pixels)
+        config(self.name(), record, schedule, self.layout(), pixels)
     }
 
     fn is_middle(self, arrival: &Arrival) -> bool {
@@ -64,8 +64,9 @@ impl Jitp {
     }
 }
 
-/// Returns the firmware's configuration for the boards of a machine.
+/// Returns the firmware's configuration for the boards of a machine. `pipeline` names the pipeline in errors.
 pub(super) fn config(
+    pipeline: &str,
     record: &Record,
     schedule: DrawingSchedule,
     layout: Layout,
@@ -73,7 +74,7 @@ pub(super) fn config(
 ) -> Result<JitpConfig, ConfigError> {
     // The firmware needs the beam times of an interlaced display.
     let ports = record.ports();
-    let display = ntsc(record, "this pipeline")?;
+    let display = ntsc(record, pipeline)?;
     let config = JitpConfig {
         host: ports.host,
         master: ports.gps[0],
