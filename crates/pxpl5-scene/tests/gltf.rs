@@ -1,5 +1,5 @@
-//! glTF files made by a writer of this test. Expected values are the numbers that the writer was given, the transforms
-//! of the glTF 2.0 specification worked out by hand, and the sRGB transfer function.
+//! glTF files made by a writer of this test. Expected values are the numbers that the writer was given. Transforms of the
+//! glTF 2.0 specification are worked out by hand. Colours come from the sRGB transfer function.
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -162,18 +162,14 @@ fn corners_without_indices_make_triangles_strips_and_fans_as_the_specification_s
         (5, vec![3, 0, 2, 1], [[3, 0, 2], [0, 1, 2]]),
         (6, vec![0, 1, 2, 3], fan),
     ] {
-        let indexed = |writer: &mut Writer| {
-            let indices: Vec<u16> = order.iter().map(|n| *n as u16).collect();
-            (writer.vectors(&SQUARE), Some(writer.shorts(&indices)))
-        };
-        let plain = |writer: &mut Writer| {
-            let positions: Vec<[f32; 3]> = order.iter().map(|n| SQUARE[*n]).collect();
-            (writer.vectors(&positions), None)
-        };
-        let makers: [&dyn Fn(&mut Writer) -> (usize, Option<usize>); 2] = [&indexed, &plain];
-        for make in makers {
+        for is_indexed in [true, false] {
             let mut writer = Writer::default();
-            let (positions, indices) = make(&mut writer);
+            let indices: Vec<u16> = order.iter().map(|n| *n as u16).collect();
+            let in_order: Vec<[f32; 3]> = order.iter().map(|n| SQUARE[*n]).collect();
+            let (positions, indices) = match is_indexed {
+                true => (writer.vectors(&SQUARE), Some(writer.shorts(&indices))),
+                false => (writer.vectors(&in_order), None),
+            };
             let mut primitive = json!({"attributes": {"POSITION": positions}, "mode": mode});
             if let Some(indices) = indices {
                 primitive["indices"] = indices.into();
@@ -388,6 +384,13 @@ fn errors_name_the_part_of_the_file() {
                 d["meshes"][0]["primitives"][0]["attributes"] = json!({});
             },
             &["meshes[0].primitives[0].attributes: expected POSITION, found none in a file that uses", name],
+        );
+        refused(
+            &|d| {
+                d["extensionsUsed"] = json!([name]);
+                d["accessors"][0].as_object_mut().expect("an object").remove("bufferView");
+            },
+            &["accessors[0].bufferView: expected a buffer view, found none in a file that uses", name],
         );
     }
     refused(&|d| d["extensionsRequired"] = json!(["VENDOR_x"]), &["extensionsRequired[0]", "VENDOR_x"]);

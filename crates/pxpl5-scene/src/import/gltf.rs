@@ -5,6 +5,9 @@
 
 mod buffers;
 mod container;
+mod document;
+#[cfg(feature = "files")]
+mod host;
 mod numbers;
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -15,6 +18,7 @@ use gltf_json::{Node, Root};
 
 use self::buffers::Buffers;
 use self::container::Chunks;
+use self::document::{COMPRESSION, Document};
 use self::numbers::Numbers;
 use super::Source;
 use super::model::{Model, Places, counted, direction, push_with_slow_growth};
@@ -33,16 +37,6 @@ const HARMLESS: [&str; 6] = [
 ];
 const HARMLESS_PREFIX: &str = "KHR_materials_";
 
-/// Extensions that compress meshes, so that the file has no plain numbers.
-const COMPRESSION: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
-
-/// A parsed file with its buffers.
-struct Document<'a> {
-    source: &'a Source<'a>,
-    root: Root,
-    buffers: Buffers<'a>,
-}
-
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut model = Model::new(Places::Single(Vec::new()));
     let chunks = Chunks::of(source)?;
@@ -60,22 +54,13 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     Ok(reader.finished())
 }
 
-fn part_error(
-    source: &Source<'_>,
-    part: impl Into<String>,
-    expected: impl Into<String>,
-    found: impl Into<String>,
-) -> LoadError {
-    LoadError::Part { file: source.name.to_owned(), part: part.into(), expected: expected.into(), found: found.into() }
-}
-
 fn check_version(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
     let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     match needed.as_str() {
         "2.0" => Ok(()),
         // A later version 2.x without a least version can be read as 2.0.
         later if later.starts_with("2.") && root.asset.min_version.is_none() => Ok(()),
-        other => Err(part_error(source, "asset.version", "2.0", super::source::excerpt(other))),
+        other => Err(source.part("asset.version", "2.0", super::source::excerpt(other))),
     }
 }
 
@@ -89,7 +74,7 @@ fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
             false => "an extension of materials, textures or lights, or KHR_mesh_quantization",
         };
         let part = format!("extensionsRequired[{number}]");
-        return Err(part_error(source, part, expected, super::source::excerpt(name)));
+        return Err(source.part(part, expected, super::source::excerpt(name)));
     }
     Ok(())
 }
@@ -122,7 +107,7 @@ impl<'a> Reader<'a> {
             Some(scene) => scene.nodes.iter().map(|node| node.value()).collect(),
             None if root.scene.is_some() => {
                 let found = format!("{} scenes", root.scenes.len());
-                return Err(part_error(source, "scene", format!("a scene with the index {number}"), found));
+                return Err(source.part("scene", format!("a scene with the index {number}"), found));
             }
             None => roots_of(&root.nodes),
         };
@@ -132,12 +117,12 @@ impl<'a> Reader<'a> {
         while let Some((number, parent)) = waiting.pop() {
             let Some(node) = root.nodes.get(number) else {
                 let found = format!("{} nodes", root.nodes.len());
-                return Err(part_error(source, format!("nodes[{number}]"), "a node with this index", found));
+                return Err(source.part(format!("nodes[{number}]"), "a node with this index", found));
             };
             // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle has no end.
             if std::mem::replace(&mut read[number], true) {
                 let found = "a second parent or a circle";
-                return Err(part_error(source, format!("nodes[{number}]"), "a node with at most one parent", found));
+                return Err(source.part(format!("nodes[{number}]"), "a node with at most one parent", found));
             }
             let to_world = parent * transform(source, number, node)?;
             let children = node.children.iter().flatten().rev();
@@ -152,7 +137,7 @@ impl<'a> Reader<'a> {
         let Some(number) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let Some(mesh) = root.meshes.get(number) else {
             let found = format!("{} meshes", root.meshes.len());
-            return Err(part_error(source, format!("meshes[{number}]"), "a mesh with this index", found));
+            return Err(source.part(format!("meshes[{number}]"), "a mesh with this index", found));
         };
         // The joints of a skin place a mesh, and its node does not. Without joints the mesh stays as it is.
         let to_world = if node.skin.is_some() { DMat4::IDENTITY } else { to_world };
@@ -174,12 +159,12 @@ impl<'a> Reader<'a> {
                 return Ok(());
             }
             Checked::Invalid => {
-                return Err(part_error(document.source, format!("{part}.mode"), "0 to 6", "another number"));
+                return Err(document.source.part(format!("{part}.mode"), "0 to 6", "another number"));
             }
         };
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         let Some(positions) = attribute(Semantic::Positions) else {
-            return Err(self.no_positions(part));
+            return Err(document.source.part(format!("{part}.attributes"), "POSITION", document.none()));
         };
         let positions = self.numbers(positions, &[3], &OF_VECTORS)?;
         let normals =
@@ -190,7 +175,7 @@ impl<'a> Reader<'a> {
             if let Some(other) = other.as_ref().filter(|other| other.count != positions.count) {
                 let expected = format!("{} items, as many as POSITION", positions.count);
                 let found = other.count.to_string();
-                return Err(part_error(document.source, format!("{part}.attributes.{name}"), expected, found));
+                return Err(document.source.part(format!("{part}.attributes.{name}"), expected, found));
             }
         }
         let indices = primitive.indices.map(|indices| self.numbers(indices.value(), &[1], &OF_INDICES)).transpose()?;
@@ -208,12 +193,6 @@ impl<'a> Reader<'a> {
             true => self.push_flat(&vertices, &corners, triangles),
             false => self.push_smooth(&vertices, &corners, triangles),
         }
-    }
-
-    fn no_positions(&self, part: &str) -> LoadError {
-        let compressed = self.document.root.extensions_used.iter().find(|name| COMPRESSION.contains(&name.as_str()));
-        let found = compressed.map_or("none".to_owned(), |name| format!("none in a file that uses {name}"));
-        part_error(self.document.source, format!("{part}.attributes"), "POSITION", found)
     }
 
     /// Returns the numbers of an accessor.
@@ -279,7 +258,7 @@ impl<'a> Reader<'a> {
             let part = format!("{}.attributes.POSITION", vertices.part);
             let expected = format!("coordinates between -{MAX_COORDINATE:e} and {MAX_COORDINATE:e}");
             let found = format!("({}, {}, {}) at vertex {vertex}", place.x, place.y, place.z);
-            return Err(part_error(self.document.source, part, expected, found));
+            return Err(self.document.source.part(part, expected, found));
         }
         let before = self.model.places.len();
         // A list stays empty until the first value that differs from its default.
@@ -310,7 +289,7 @@ impl<'a> Reader<'a> {
         let Some(material) = materials.get(number) else {
             let found = format!("{} materials", materials.len());
             let expected = format!("a material with the index {number}");
-            return Err(part_error(self.document.source, format!("{part}.material"), expected, found));
+            return Err(self.document.source.part(format!("{part}.material"), expected, found));
         };
         let [red, green, blue, _] = material.pbr_metallic_roughness.base_color_factor.0;
         Ok(Some([red.into(), green.into(), blue.into()]))
@@ -360,7 +339,7 @@ fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, L
             let quaternion = DQuat::from_array(rotation.0.map(f64::from));
             if quaternion.length_squared() == 0.0 {
                 let part = format!("nodes[{number}].rotation");
-                return Err(part_error(source, part, "a quaternion of length 1", format!("{:?}", rotation.0)));
+                return Err(source.part(part, "a quaternion of length 1", format!("{:?}", rotation.0)));
             }
             quaternion.normalize()
         }
@@ -445,13 +424,11 @@ impl Corners<'_> {
         let count = self.count();
         if u32::try_from(self.vertices).is_err() {
             let found = self.vertices.to_string();
-            return Err(part_error(source, part, "at most 4294967295 vertices", found));
+            return Err(source.part(part, "at most 4294967295 vertices", found));
         }
         match self.mode {
-            Mode::Triangles if count % 3 == 0 => Ok(count / 3),
-            Mode::Triangles => {
-                Err(part_error(source, part, "three corners for each triangle", format!("{count} corners")))
-            }
+            Mode::Triangles if count.is_multiple_of(3) => Ok(count / 3),
+            Mode::Triangles => Err(source.part(part, "three corners for each triangle", format!("{count} corners"))),
             _ => Ok(count.saturating_sub(2)),
         }
     }
@@ -473,7 +450,7 @@ impl Corners<'_> {
             let index = self.indices.as_ref().map_or(corner, |indices| indices.number(corner, 0) as usize);
             if index >= self.vertices {
                 let expected = format!("an index of one of {} vertices", self.vertices);
-                return Err(part_error(source, format!("{part}.indices"), expected, index.to_string()));
+                return Err(source.part(format!("{part}.indices"), expected, index.to_string()));
             }
             *vertex = index as u32;
         }

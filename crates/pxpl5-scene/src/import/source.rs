@@ -41,6 +41,22 @@ impl<'a> Source<'a> {
         LoadError::Truncated { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
     }
 
+    /// Returns an error for a part of a glTF file.
+    #[cfg(feature = "gltf")]
+    pub(crate) fn part(
+        &self,
+        part: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> LoadError {
+        LoadError::Part {
+            file: self.name.to_owned(),
+            part: part.into(),
+            expected: expected.into(),
+            found: found.into(),
+        }
+    }
+
     /// Returns the vector if all its coordinates are finite and within the limit, and an error otherwise.
     pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
         match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {

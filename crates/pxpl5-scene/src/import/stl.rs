@@ -1,7 +1,7 @@
 //! Reader of STL files, ASCII and binary.
 //!
-//! The existing library stl_io is not used. Its errors lack the line number, it takes a binary file whose header begins
-//! with `solid` for text, and it refuses normals that are not numbers.
+//! The existing library stl_io is not used. Its errors lack the line number. It takes a binary file for text if the header
+//! begins with `solid`. It refuses normals that are not numbers.
 
 use glam::DVec3;
 

@@ -7,7 +7,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf_json::Root;
 
-use super::part_error;
+#[cfg(feature = "files")]
+use super::host::read_file;
 use crate::config::MAX_FILE_BYTES;
 use crate::error::LoadError;
 use crate::import::Source;
@@ -50,10 +51,10 @@ impl<'a> Buffers<'a> {
     pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], LoadError> {
         match self.buffers.get(number) {
             Some(Ok(bytes)) => Ok(bytes),
-            Some(Err([expected, found])) => Err(part_error(source, format!("buffers[{number}]"), expected, found)),
+            Some(Err([expected, found])) => Err(source.part(format!("buffers[{number}]"), expected, found)),
             None => {
                 let found = format!("{} buffers", self.buffers.len());
-                Err(part_error(source, format!("buffers[{number}]"), "a buffer with this index", found))
+                Err(source.part(format!("buffers[{number}]"), "a buffer with this index", found))
             }
         }
     }
@@ -108,23 +109,6 @@ fn percent_decoded(uri: &str) -> Option<String> {
         }
     }
     String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'))
-}
-
-#[cfg(feature = "files")]
-fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
-    use std::io::Read;
-    let metadata = std::fs::metadata(path).map_err(|error| error.to_string())?;
-    // Reading a device or a pipe might never end.
-    if !metadata.is_file() {
-        return Err("no regular file".to_owned());
-    }
-    if metadata.len() > limit {
-        return Err(format!("{} bytes, and only {limit} are allowed", metadata.len()));
-    }
-    let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
-    file.take(limit).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    Ok(bytes)
 }
 
 #[cfg(not(feature = "files"))]

@@ -3,7 +3,7 @@
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::Checked;
 
-use super::{Document, part_error};
+use super::document::Document;
 use crate::error::LoadError;
 
 /// Items of one type in a buffer, with equal distances.
@@ -58,8 +58,7 @@ impl<'a> Numbers<'a> {
         kinds: &[ComponentType],
     ) -> Result<Self, LoadError> {
         let part = |name: &str| format!("accessors[{index}]{name}");
-        let fail =
-            |name: &str, expected: String, found: String| Err(part_error(document.source, part(name), expected, found));
+        let fail = |name: &str, expected: String, found: String| Err(document.source.part(part(name), expected, found));
         let Some(accessor) = document.root.accessors.get(index) else {
             return fail("", "an accessor with this index".into(), count(document.root.accessors.len(), "accessors"));
         };
@@ -90,11 +89,7 @@ impl<'a> Numbers<'a> {
         };
         let sparse = sparse(document, accessor, &part(".sparse"), length, item)?;
         if base.is_none() && sparse.is_none() {
-            let found = match accessor.extensions {
-                Some(_) => "none, as in a mesh that is compressed by an extension",
-                None => "none",
-            };
-            return fail(".bufferView", "a buffer view".into(), found.into());
+            return fail(".bufferView", "a buffer view".into(), document.none());
         }
         let factor = if accessor.normalized { normalizing_factor(kind) } else { 1.0 };
         Ok(Self { base, sparse, count: length, components: of_item, factor })
@@ -143,7 +138,7 @@ fn items<'a>(
     count: usize,
     (kind, bytes_of_item): (ComponentType, usize),
 ) -> Result<Items<'a>, LoadError> {
-    let fail = |part: String, expected: String, found: String| Err(part_error(document.source, part, expected, found));
+    let fail = |part: String, expected: String, found: String| Err(document.source.part(part, expected, found));
     let Some(described) = document.root.buffer_views.get(view) else {
         let found = self::count(document.root.buffer_views.len(), "buffer views");
         return fail(format!("bufferViews[{view}]"), "a buffer view with this index".into(), found);
@@ -187,7 +182,7 @@ fn sparse<'a>(
     let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
     let Checked::Valid(kind) = sparse.indices.component_type else {
         let expected = "an unsigned type of 1, 2 or 4 bytes";
-        return Err(part_error(document.source, format!("{part}.indices.componentType"), expected, "another number"));
+        return Err(document.source.part(format!("{part}.indices.componentType"), expected, "another number"));
     };
     let of_indices = (kind.0, kind.0.size());
     let at = format!("{part}.indices");
@@ -201,7 +196,7 @@ fn sparse<'a>(
         let index = indices.number(i, 0) as usize;
         if index < least || index >= length {
             let expected = format!("indices from 0 to {} in increasing order", length.saturating_sub(1));
-            return Err(part_error(document.source, format!("{part}.indices"), expected, index.to_string()));
+            return Err(document.source.part(format!("{part}.indices"), expected, index.to_string()));
         }
         least = index + 1;
     }

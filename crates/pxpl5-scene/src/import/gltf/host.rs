@@ -1,0 +1,22 @@
+//! Reading of the files beside a model on the host's disk.
+#![cfg(feature = "files")]
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+/// Reads a file of at most `limit` bytes. The error describes what was found instead.
+pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+    let metadata = fs::metadata(path).map_err(|error| error.to_string())?;
+    // Reading a device or a pipe might never end.
+    if !metadata.is_file() {
+        return Err("no regular file".to_owned());
+    }
+    if metadata.len() > limit {
+        return Err(format!("{} bytes, and only {limit} are allowed", metadata.len()));
+    }
+    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    let file = fs::File::open(path).map_err(|error| error.to_string())?;
+    file.take(limit).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
