@@ -473,7 +473,7 @@ fn an_unusable_checkpoint_is_refused_with_the_reason() {
         ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: expected checksum"),
         ("newer.json", text.replace("snapshot/1", "snapshot/9"), "found pxpl5-snapshot/9"),
         ("report.json", "{\"schema\": \"pxpl5-report/1\"}".to_owned(), "found pxpl5-report/1"),
-        ("picture.png", "\u{89}PNG".to_owned(), "no snapshot"),
+        ("picture.png", "\u{89}PNG".to_owned(), "not a checkpoint"),
     ] {
         let path = folder.file(name, contents);
         refused(&["run", "--restore", path.to_str().expect("text")], 1, &[name, says]);
@@ -646,6 +646,6 @@ fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
         }
         let output = folder.run(&with(&["limit", "--pipeline", pipeline], &still));
         assert_eq!(output.status.code(), Some(1), "{}", out(&output));
-        assert!(err(&output).contains("expected a scene whose updates have a rate"), "{}", err(&output));
+        assert!(err(&output).contains("expected a scene with a rate of updates"), "{}", err(&output));
     }
 }
