@@ -131,7 +131,7 @@ pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
     if groups.iter().all(|group| group.n == 0) {
         let y = &args.y;
         return Err(CliError::failure(format!(
-            "no row of {} has a number in column {y}; nothing was drawn",
+            "none of {} has a number in column {y}; nothing was drawn",
             count_of(missing, "row")
         )));
     }

@@ -85,7 +85,7 @@ fn a_result_that_was_not_evaluated_is_not_zero() {
     sweep(&folder, |_, _, _| Value::Null);
     let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "none.svg"]);
     assert_eq!(run.status.code(), Some(1));
-    assert!(err(&run).contains("no row of 18 rows has a number") && !folder.names().contains(&"none.svg".to_owned()));
+    assert!(err(&run).contains("none of 18 rows has a number") && !folder.names().contains(&"none.svg".to_owned()));
 }
 
 /// Tests the size of figures. 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72 inch.
