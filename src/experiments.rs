@@ -234,7 +234,7 @@ pub use pxpl5_run::{Cause, Fingerprint};
 
 /// ```
 /// use pxpl5::firmware::{RegionId, Shading};
-/// use pxpl5::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, prelude::*};
+/// use pxpl5::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, prelude::*};
 ///
 /// /// Draws region after region, with one renderer after the other.
 /// #[derive(Debug)]
@@ -255,6 +255,11 @@ pub use pxpl5_run::{Cause, Fingerprint};
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::small_hmd(), pipeline, scene).fields(60).pixels(Pixels::Off);
 /// assert!(experiment.run()?.latency().is_some());
+///
+/// // A frame checks an assignment before it is drawn.
+/// let frame = PolicyFrame { frame: Default::default(), time: Default::default(), columns: 1, primitives: vec![9], renderers: 5 };
+/// let error: PolicyError = frame.check(&[(RegionId(0), 5)]).expect_err("renderers 0 to 4");
+/// println!("{error}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};

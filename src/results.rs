@@ -224,4 +224,20 @@ pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
 /// ```
 pub use pxpl5_measure::RasterOffsets;
 
-pub use pxpl5_measure::{DepthPicture, picture, reproject, reproject_with_depth, side_by_side};
+/// ```
+/// use pxpl5::image::RgbImage;
+/// use pxpl5::tracking::view::HmdView;
+/// use pxpl5::{DepthPicture, prelude::*, reproject_with_depth};
+///
+/// // A wall two metres ahead, and a head that moves five centimetres to the right.
+/// let depths = DepthPicture::from_fn(640, 480, |_, _| 2.0);
+/// let now = Pose { position: DVec3::new(0.05, 0.0, 0.0), ..Pose::IDENTITY };
+/// let moved = reproject_with_depth(&RgbImage::new(640, 480), &depths, &HmdView::ntsc(), &Pose::IDENTITY, &now);
+/// // The picture moves to the left, so its right edge has no content.
+/// let (_, black) = moved.ok_or("three pictures of one size")?;
+/// assert!(black > 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub use pxpl5_measure::DepthPicture;
+
+pub use pxpl5_measure::{picture, reproject, reproject_with_depth, side_by_side};

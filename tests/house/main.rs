@@ -95,9 +95,11 @@ fn no_module_imports_itself_through_others() {
 #[test]
 fn the_facade_only_hands_on() {
     let facade = workspace().into_iter().find(|member| member.name == "pxpl5").expect("the root");
-    let lines: usize = facade.files.iter().map(|file| file.text.lines().count()).sum();
-    assert!(lines < 300, "{lines} lines");
-    for line in facade.files.iter().flat_map(|file| file.text.lines()) {
+    // Examples in comments do not count.
+    let texts = facade.files.iter().flat_map(|file| file.text.lines());
+    let code: Vec<&str> = texts.filter(|line| !line.trim_start().starts_with("//")).collect();
+    assert!(code.len() < 300, "{} lines", code.len());
+    for line in code {
         assert!(!line.trim_start().starts_with("pub fn") && !line.contains("impl "), "{line}");
     }
 }

@@ -1,7 +1,7 @@
 //! Builds the machine of an experiment and loads its programs.
 
 use crate::assembled::Assembled;
-use crate::display_list::{display_list_for, hmd_before, poses, views};
+use crate::display_list::display_list_for;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::head::Head;
@@ -11,6 +11,7 @@ use crate::pipeline::{Pipeline, Setup};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::moves;
 use crate::preparation::Preparation;
+use crate::scene_views::{hmd_before, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{ConfigError, Machine, MachineConfig};

@@ -1,9 +1,9 @@
 //! Records of the poses that a pipeline requested, and of the tracker reports that each pose used.
 
-use crate::display_list::view;
 use crate::head::{Head, HeadPlace};
 use crate::rehearsal::SeenTimes;
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
+use crate::scene_views::view;
 use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
 use glam::{DQuat, DVec3};
 use pphigs::FrameView;

@@ -1,9 +1,10 @@
 //! Ideal pictures, for comparison with the pictures of a run.
 
-use crate::display_list::{display_list_for, hmd_before, view, views};
+use crate::display_list::display_list_for;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::outcome::Outcome;
+use crate::scene_views::{hmd_before, view, views};
 use pphigs::oracle::IdealPicture;
 use pphigs::{Picture, RegionBinning};
 use pxpl5_geometry::Viewport;

@@ -1,6 +1,6 @@
 //! Names and settings of the address recalculation pipelines.
 
-use super::pipeline::FacePolicy;
+use super::policy::FacePolicy;
 use crate::keys::{Key, KeyValues};
 use address_recalculation::priority::Falloff;
 

@@ -6,6 +6,7 @@ use super::ideal::{All, IdealFaces, seen_next};
 use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
+use super::policy::FacePolicy;
 use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
@@ -28,28 +29,6 @@ use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, maste
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
-
-/// Policy that decides which structures are drawn into which display memory, and when.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FacePolicy {
-    /// One display memory holds all structures and is redrawn as often as possible.
-    Full,
-    /// Each structure is drawn into the slowest memory in which its image stays correct (CPR05).
-    Objects,
-    /// Each structure is drawn into the memory of its cell. The memory depends on the cell's distance from the user's
-    /// cell (CPR05).
-    Cells,
-    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent memories meet at their borders.
-    CellsWarped,
-}
-
-impl FacePolicy {
-    /// All policies with their names in experiment files.
-    pub const ALL: [(&str, Self); 4] =
-        [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells), ("cells-warp", Self::CellsWarped)];
-}
-
-pxpl5_sim::parameters::named!(FacePolicy, "policy", FacePolicy::ALL);
 
 /// The renderer that draws the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,53 @@
+//! Converts scenes to views for hosts.
+
+use crate::views::{Poses, Views, ViewsWanted};
+use pphigs::{EyeView, FrameView, ModelEdit};
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
+use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
+use pxpl5_wire::display::Surface;
+use std::sync::Arc;
+
+/// Returns the view of a scene at a time, seen from a pose through the papers' head-mounted display.
+pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, time: Time, pose: &Pose) -> FrameView {
+    let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
+    let eye = |v: &pxpl5_scene::View| EyeView {
+        world_to_eye: v.world_to_eye,
+        head_to_eye: v.head_to_eye,
+        projection: v.projection,
+    };
+    let edit = |e: &pxpl5_scene::Edit| ModelEdit { structure: e.structure as u32, model: e.model };
+    FrameView {
+        number,
+        eyes: views.iter().map(eye).collect(),
+        edits: scene.edits_at(time.0).iter().map(edit).collect(),
+    }
+}
+
+/// Returns a head-mounted display with the resolution of a surface.
+///
+/// # Panics
+///
+/// Never panics, because every display has surfaces with a width and height of 1 to 65,536 pixels.
+pub(crate) fn hmd_before(surface: Option<&Surface>, hmd: HmdConfig) -> Hmd {
+    let config = surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd });
+    Hmd::new(config).expect("a surface has pixels")
+}
+
+/// Returns the poses of the scene's own head motion. The host follows this motion without any delay.
+pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
+    let motion: HeadMotion = scene.motion().with_seed(seed);
+    Arc::new(move |known, _| motion.pose(known.0))
+}
+
+/// Returns two functions that give views of the scene's own head motion. The first returns the view at the sample time,
+/// the second the view at the time when it is seen.
+pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
+    let motion: HeadMotion = scene.motion().with_seed(seed);
+    let at = {
+        let scene = Arc::clone(scene);
+        move |number: ViewNumber, time: Time| view(&scene, &hmd, eyes, number, time, &motion.pose(time.0))
+    };
+    let wanted = at.clone();
+    (Arc::new(at), Arc::new(move |number, _, shown_at| wanted(number, shown_at)))
+}
