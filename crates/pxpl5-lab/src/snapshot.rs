@@ -407,7 +407,7 @@ mod tests {
         let snapshot = Snapshot::of_stepper(&stepper).expect("at a retrace");
         for other in [experiment.clone().fields(41), built_in_code(0.25)] {
             let error = snapshot.resume(&other, "s").expect_err("another experiment").to_string();
-            assert!(error.contains("not the one that was saved"), "{error}");
+            assert!(error.contains("the repeated run differs from the saved run"), "{error}");
         }
         stepper.step_event();
         let error = Snapshot::of_stepper(&stepper).expect_err("after an event").to_string();
@@ -430,7 +430,7 @@ mod tests {
             |field, machine| {
                 if field == PeriodNumber(9) {
                     let error = snapshot.check_machine(machine, "s").expect_err("another seed").to_string();
-                    assert!(error.contains("not the one that was saved"), "{error}");
+                    assert!(error.contains("the repeated run differs from the saved run"), "{error}");
                 }
                 Ok(())
             },

@@ -283,7 +283,7 @@ impl Head {
             Numbers::Given | Numbers::ToBeTuned => {}
         }
         if self.place != HeadPlace::Scene {
-            hash.setting("place", &self.place.to_string());
+            hash.setting("place", self.place.to_string());
         }
         // Settings that affect evaluation and display, then the given reports.
         if let Some(metres) = self.judge_at_m {
