@@ -224,6 +224,16 @@ class Outcome(Strict):
         return self._live.stages() if saved is None else saved
 
     @property
+    def events(self) -> Table:
+        """A row for each observed event in the order of time: time_ps, board, picture and event.
+
+        Events are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps. Raises
+        :class:`DiscardedError` as :attr:`pictures`.
+        """
+        self._check_records("events")
+        return self._live.events()
+
+    @property
     def surfaces(self) -> list[str]:
         """Labels of the surfaces that a viewer sees, such as left and right."""
         return self._value(lambda saved: list(saved["surfaces"]), lambda native: native.surfaces())

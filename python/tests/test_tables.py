@@ -54,6 +54,14 @@ def test_a_stage_ends_after_its_begin(mig: pxpl5.Outcome) -> None:
     assert {"transform", "render", "copy"} <= set(stages["stage"])
 
 
+def test_events_are_in_the_order_of_time_and_name_their_boards(mig: pxpl5.Outcome) -> None:
+    events = mig.events
+    assert (np.diff(events["time_ps"]) >= 0).all()
+    assert {"GP 0", "renderer 0", "display 0"} <= set(events["board"])
+    begun = [row for row in events if row["event"].lower().startswith("begin of transform")]
+    assert begun and all(row["picture"] is not None for row in begun)
+
+
 def test_unknown_columns_and_rows_are_refused(mig: pxpl5.Outcome) -> None:
     with pytest.raises(KeyError, match="there is no column `colour`; expected picture, steady"):
         mig.pictures["colour"]

@@ -70,6 +70,17 @@ pub enum ObservedKind {
     },
 }
 
+impl ObservedKind {
+    /// Returns the number of the picture that the event belongs to. Returns `None` for swaps and messages.
+    #[must_use]
+    pub const fn picture(&self) -> Option<PictureNumber> {
+        match *self {
+            Self::Stage { picture, .. } | Self::Copied { picture, .. } | Self::Arrived { picture, .. } => Some(picture),
+            Self::Swapped { .. } | Self::Message { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for ObservedEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}: {}", self.time, self.board, self.kind)

@@ -13,7 +13,7 @@ use pxpl5::views::page::{PagePicture, PageRun, html};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::{columns, origin, rows};
 use pxpl5::views::timeline::{TimelineOptions, svg};
-use pxpl5::{ExperimentError, Eye, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
+use pxpl5::{ExperimentError, Eye, ObservedEvent, PeriodNumber, QUANTITIES, Report, Results, SurfaceId};
 use pxpl5::{Measure, Measured, side_by_side};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -250,6 +250,35 @@ impl Outcome {
                 numbers(&stages, |s| Some(ps(s.begin))),
             ),
             Column::whole("end_ps", "when the last board ended, picoseconds", numbers(&stages, |s| s.end.map(ps))),
+        ])
+    }
+
+    /// Returns a table with one row for each observed event, in the order of time: stages of programs, regions that
+    /// renderers copied, regions that arrived at displays, swaps, and messages if the run recorded traffic.
+    fn events(&self, py: Python<'_>) -> PyResult<Table> {
+        let (outcome, _) = self.run(py)?;
+        let events: Vec<ObservedEvent> = py.detach(|| outcome.events().collect());
+        Table::of(vec![
+            Column::whole(
+                "time_ps",
+                "when the event happened, picoseconds",
+                events.iter().map(|event| Some(event.time.0.cast_signed())).collect(),
+            ),
+            Column::text(
+                "board",
+                "name of the board",
+                events.iter().map(|event| Some(event.board.to_string())).collect(),
+            ),
+            Column::whole(
+                "picture",
+                "number of the picture in its pipeline's own count",
+                events.iter().map(|event| event.kind.picture().map(|number| number.0.cast_signed())).collect(),
+            ),
+            Column::text(
+                "event",
+                "the event in words",
+                events.iter().map(|event| Some(event.kind.to_string())).collect(),
+            ),
         ])
     }
 
