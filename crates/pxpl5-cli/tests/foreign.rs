@@ -27,7 +27,7 @@ fn what_a_reader_makes_of_a_model_is_told() {
 #[test]
 fn a_model_in_a_format_that_cannot_be_read_is_refused_with_those_that_can() {
     let folder = Folder::new("foreign-format");
-    for name in ["model.fbx", "./model.fbx", "model.FBX"] {
+    for name in ["model.fbx", "./model.fbx", "model.FBX", "model.3ds"] {
         folder.file(name, "solid");
         let run = folder.run(&["run", "--pipeline", "slats", "--scene", name]);
         let said = err(&run);

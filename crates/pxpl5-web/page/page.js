@@ -718,8 +718,8 @@ at("tilt").addEventListener("click", async () => {
 });
 
 async function take(file) {
-  if (!/\.(ply|obj|pdb|ent|csv|txt|tum)$/i.test(file.name)) {
-    return say(`${file.name} cannot be used: expected a model (.ply, .obj, .pdb, .ent) or a recorded head motion (.csv, .txt, .tum).`);
+  if (!/\.(ply|obj|stl|pdb|ent|csv|txt|tum)$/i.test(file.name)) {
+    return say(`${file.name} cannot be used: expected a model (.ply, .obj, .stl, .pdb, .ent) or a recorded head motion (.csv, .txt, .tum).`);
   }
   if (mode !== "lab") toLab();
   const before = { settings, dropped };

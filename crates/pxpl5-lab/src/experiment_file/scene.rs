@@ -84,9 +84,8 @@ impl SceneChoice {
 }
 
 /// Returns true if a scene's name is the path of a file: it contains a separator or a file extension. A built-in scene
-/// has no extension, because the part behind the dot in `typical:1.5` does not start with a letter.
+/// has no extension, because the part behind the dot in `typical:1.5` has no letter.
 pub(crate) fn is_file(name: &str) -> bool {
-    let extension =
-        Path::new(name).extension().map(|end| end.to_string_lossy().starts_with(|c: char| c.is_alphabetic()));
+    let extension = Path::new(name).extension().map(|end| end.to_string_lossy().contains(char::is_alphabetic));
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension == Some(true)
 }
