@@ -144,7 +144,7 @@ fn a_recording_sets_the_length_and_has_an_interval_over_time() {
     }
     let refused = run(&["--until-precision", "10%"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(err(&refused).contains("a recording is one motion"), "{}", err(&refused));
+    assert!(err(&refused).contains("this motion is the same for all seeds"), "{}", err(&refused));
 }
 
 #[test]

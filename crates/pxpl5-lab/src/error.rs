@@ -46,10 +46,18 @@ pub enum StudyError {
     NoHead,
     /// The query asks for a precision, but more seeds cannot move the head otherwise.
     #[error(
-        "a recording is one motion: its interval is a bootstrap over time, which more seeds do not make narrower; use a longer \
-         recording, or compare without a precision"
+        "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
+         use head.motion = synthetic or a longer recording, or compare without a precision"
     )]
     OneMotion,
+    /// The seeds of a comparison are not usable.
+    #[error("expected {expected}, found {found}")]
+    Seeds {
+        /// What was expected.
+        expected: String,
+        /// The seed or the number of seeds in the query.
+        found: u64,
+    },
     /// A file of finished rows cannot be read or written.
     #[error(transparent)]
     Files(#[from] SweepError),

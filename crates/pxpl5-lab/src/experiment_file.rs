@@ -223,6 +223,15 @@ impl ExperimentFile {
         file.resolve()
     }
 
+    /// Returns true if each seed moves the head otherwise: the head has the synthetic motion without a seed of its own.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`FileError`] if the motion is not a text.
+    pub fn has_motion_for_each_seed(&self) -> Result<bool, FileError> {
+        Ok(self.text("head.motion")? == Some(SYNTHETIC))
+    }
+
     /// Sets a key from the text `path=value`. A value that is not valid TOML is taken as a string.
     ///
     /// # Errors

@@ -142,12 +142,7 @@ impl Hmd {
         let above_near = c.far_m > c.near_m && c.far_m <= 1e9;
         require(above_near, "far_m", "above near_m, at most 1e9", c.far_m)?;
         if let Some(metres) = c.convergence_m {
-            require(
-                (0.1..=1e6).contains(&metres),
-                "convergence_m",
-                "0.1 to 1e6, or infinity for parallel axes",
-                metres,
-            )?;
+            require((0.1..=1e6).contains(&metres), "convergence_m", "0.1 to 1e6, or none for parallel axes", metres)?;
         }
         let lens = "0: the model shows flat pictures without a lens";
         require(c.lens_distortion == 0.0, "lens_distortion", lens, c.lens_distortion)?;

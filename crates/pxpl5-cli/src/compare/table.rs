@@ -50,16 +50,21 @@ pub(super) fn text(comparison: &Comparison) -> String {
 
 /// Returns a sentence for each method of the intervals, with the rows that have it.
 fn intervals(comparison: &Comparison) -> String {
-    let confidence = comparison.confidence * 100.0;
+    let confidence = percent(comparison.confidence);
     let mut text = String::new();
     for method in IntervalMethod::ALL {
         let rows = comparison.pipelines.iter().filter(|row| row.was_evaluated() && row.error.mean_px.method == method);
         let names: Vec<String> = rows.map(with_blocks).collect();
         if !names.is_empty() {
-            let _ = writeln!(text, "Intervals of {confidence:.0} %, {}: {}.", method.words(), names.join(", "));
+            let _ = writeln!(text, "Intervals of {confidence} %, {}: {}.", method.words(), names.join(", "));
         }
     }
     text
+}
+
+/// Returns a share in percent, with the digits that it needs.
+fn percent(share: f64) -> f64 {
+    (share * 1e8).round() / 1e6
 }
 
 /// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
@@ -73,7 +78,10 @@ fn with_blocks(row: &ComparisonRow) -> String {
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {
-        let rows = comparison.pipelines.iter().filter(move |row| row.is_precise == Some(precise));
+        let rows = comparison
+            .pipelines
+            .iter()
+            .filter(move |row| row.is_precise == Some(precise) && row.error.mean_px.width().is_some());
         rows.map(|row| format!("{} ({})", row.pipeline, count_of(row.seeds, "seed"))).collect::<Vec<_>>().join(", ")
     };
     let mut text = String::new();
@@ -118,10 +126,10 @@ fn best(comparison: &Comparison) -> String {
         return "\nNo row showed every picture that was due.\n".to_owned();
     };
     format!(
-        "\nLeast error of the rows that showed every picture: {}, {} px ({:.0} % interval {}); all over the fields from {} on.\n",
+        "\nLeast error of the rows that showed every picture: {}, {} px ({} % interval {}); all over the fields from {} on.\n",
         best.pipeline,
         number(best.error.mean_px.mean, 2),
-        comparison.confidence * 100.0,
+        percent(comparison.confidence),
         interval(&best.error.mean_px),
         comparison.evaluated_from,
     )

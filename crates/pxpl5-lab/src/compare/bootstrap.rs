@@ -16,8 +16,12 @@ use serde::{Deserialize, Serialize};
 /// Number of resampled means.
 pub const RESAMPLES: usize = 2_000;
 
-/// Minimum number of values for an interval. Assumed: fewer values do not contain several blocks.
-pub const MIN_BOOTSTRAP_VALUES: usize = 8;
+/// Minimum number of values for an interval. Assumed: shorter series hide their own dependence, and the intervals of
+/// series with a known dependence were much too narrow.
+pub const MIN_BOOTSTRAP_VALUES: usize = 100;
+
+/// Minimum number of blocks in a series for an interval (assumed).
+const MIN_BLOCKS: usize = 10;
 
 /// Seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
@@ -41,13 +45,17 @@ pub struct BlockBootstrap {
 }
 
 impl BlockBootstrap {
-    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers.
+    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and for a
+    /// series whose values depend on each other over more than a tenth of its length.
     #[must_use]
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
             return None;
         }
         let block = block_length(series);
+        if series.len() < MIN_BLOCKS * block {
+            return None;
+        }
         let sums = running_sums(series);
         let mut means: Vec<f64> = (0..RESAMPLES as u64).map(|n| resampled_mean(&sums, block, n)).collect();
         means.sort_by(f64::total_cmp);
@@ -164,7 +172,7 @@ fn block_length(series: &[f64]) -> usize {
     let level = covariances[0] + weighted(|_| 1.0);
     let ratio = slope / level;
     let length = (1.5 * ratio * ratio * n).cbrt();
-    let most = (3.0 * n.sqrt()).min(n / 3.0).ceil();
+    let most = (3.0 * n.sqrt()).min(n / 3.0).floor().max(1.0);
     if length.is_finite() { length.ceil().clamp(1.0, most) as usize } else { most as usize }
 }
 

@@ -1,6 +1,6 @@
 //! The width at which the interval of a mean is narrow enough, and the number of seeds that it takes.
 
-use super::interval::MeanInterval;
+use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;
 use std::str::FromStr;
 
@@ -26,10 +26,12 @@ pub struct UntilPrecise {
 pub const MAX_SEEDS: usize = 50;
 
 impl UntilPrecise {
-    /// Returns true if the interval exists and is narrow enough.
+    /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not count,
+    /// because it leaves out how motions differ.
     #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
-        error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
+        let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
+        is_over_seeds && error.width().is_some_and(|width| width <= self.greatest_width(error.mean))
     }
 
     /// Returns the number of seeds to add to a row, and 0 if the interval is narrow enough or the maximum is reached.
@@ -59,7 +61,8 @@ impl UntilPrecise {
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Share(share) => write!(f, "{}%", share * 100.0),
+            // Rounded, because 7 % as a share is a little more than 0.07.
+            Self::Share(share) => write!(f, "{}%", (share * 1e8).round() / 1e6),
             Self::Pixels(px) => write!(f, "{px}px"),
         }
     }
@@ -102,6 +105,11 @@ mod tests {
         let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
         assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));
         assert!(!TENTH.is_reached(&MeanInterval::of(&[5.0], 0.95)), "one seed has no interval");
+        let over_time = MeanInterval { method: IntervalMethod::MovingBlockBootstrap, ..error(0.1) };
+        assert!(
+            !TENTH.is_reached(&over_time) && TENTH.seeds_to_add(&over_time, 1) > 0,
+            "one motion tells nothing of others"
+        );
     }
 
     /// An interval that is 1.2 times too wide needs 1.44 times the seeds: 7.2, so 8.
@@ -119,6 +127,10 @@ mod tests {
         assert_eq!(
             ["5%", "0.2px"].map(|text| text.parse().ok()),
             [Some(Precision::Share(0.05)), Some(Precision::Pixels(0.2))]
+        );
+        assert_eq!(
+            ["7%", "29%", "0.5%"].map(|text| text.parse::<Precision>().expect(text).to_string()),
+            ["7%", "29%", "0.5%"]
         );
         for text in ["5", "0%", "-1px", "NaN%", "", "infpx"] {
             let error = text.parse::<Precision>().expect_err(text).to_string();

@@ -7,7 +7,7 @@ use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
 use crate::error::StudyError;
-use crate::experiment_file::{ExperimentFile, HeadChoice, Plan, plain};
+use crate::experiment_file::{ExperimentFile, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use pxpl5_measure::Showing;
@@ -17,7 +17,7 @@ use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
 /// all observations of a run in memory to evaluate its errors in several ways.
@@ -154,21 +154,26 @@ impl CompareQuery {
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
         let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
+        // No further row starts after one could not be stored.
+        let is_failed = AtomicBool::new(false);
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
         let pipelines = parallel::map(&compared_pipelines, |contender| {
             if let Some(row) = held(contender) {
-                return Ok(row);
+                return Ok(Some(row));
+            }
+            if is_failed.load(Ordering::Relaxed) {
+                return Ok(None);
             }
             let row = self.row(contender, &scene, &progress)?;
             if self.limits {
                 progress.step();
             }
             let row = match store {
-                Some(store) => store.append(row)?,
+                Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
                 None => row,
             };
             ended(&row);
-            Ok::<_, StudyError>(row)
+            Ok::<_, StudyError>(Some(row))
         });
         Ok(Comparison {
             schema: "pxpl5-comparison/3",
@@ -184,7 +189,7 @@ impl CompareQuery {
             until_precision: self.until.map(|until| until.width.to_string()),
             max_seeds: self.until.map(|until| until.max_seeds),
             evaluated_from: common_window_from(any.fields),
-            pipelines: pipelines.into_iter().collect::<Result<_, _>>()?,
+            pipelines: pipelines.into_iter().filter_map(Result::transpose).collect::<Result<_, _>>()?,
         })
     }
 
@@ -247,15 +252,37 @@ impl CompareQuery {
         if plan.head.is_none() {
             return Err(StudyError::NoHead);
         }
-        if self.until.is_some() && plan.head.as_ref().is_some_and(HeadChoice::is_recording) {
+        if self.until.is_some() && !self.shared.has_motion_for_each_seed()? {
             return Err(StudyError::OneMotion);
         }
+        self.check_seeds()?;
         // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
         if !(expected.0..=expected.1).contains(&plan.fields) {
             return Err(StudyError::Fields { expected, found: plan.fields });
         }
         Ok(plan)
+    }
+
+    /// Checks that all seeds differ, that experiment files can hold them, and that the maximum number of seeds is not
+    /// below the number of seeds.
+    fn check_seeds(&self) -> Result<(), StudyError> {
+        let mut sorted = self.seeds.clone();
+        sorted.sort_unstable();
+        let twice = sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
+        let max_seeds = self.until.map_or(0, |until| until.max_seeds);
+        let greatest = i64::MAX as u64 - max_seeds as u64;
+        match (twice, sorted.last()) {
+            (Some(seed), _) => Err(StudyError::Seeds { expected: "different seeds".to_owned(), found: seed }),
+            (None, Some(seed)) if *seed > greatest => {
+                Err(StudyError::Seeds { expected: format!("seeds of at most {greatest}"), found: *seed })
+            }
+            _ if self.until.is_some() && max_seeds < self.seeds.len() => {
+                let expected = format!("a maximum of at least {} seeds", self.seeds.len());
+                Err(StudyError::Seeds { expected, found: max_seeds as u64 })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Returns seeds that follow the seeds of the query and those that were added before.
@@ -296,7 +323,7 @@ impl CompareQuery {
         progress: &Progress<'_>,
     ) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
-        let is_one_motion = plan.head.as_ref().is_some_and(HeadChoice::is_recording);
+        let is_one_motion = !self.shared.has_motion_for_each_seed()?;
         let mut trials = self.trials(contender, &self.seeds, scene, progress);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.

@@ -5,6 +5,7 @@ use super::store::{CompareStore, Header, ROWS_SCHEMA};
 use crate::error::StudyError;
 use crate::experiment_file::plain;
 use crate::sweep::inputs_of;
+use pxpl5_run::Fingerprint;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -37,6 +38,8 @@ impl CompareQuery {
         put("--until-precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
         put("--max-seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
         put("pictures", self.pictures.to_string());
+        // The scene itself, because a model can name further files.
+        put("contents of the scene", Fingerprint::of_scene(&*plan.load_scene()?).to_string());
         for (name, contents) in inputs_of(&self.shared) {
             put(&format!("contents of {name}"), contents.to_string());
         }

@@ -140,6 +140,11 @@ impl ComparisonRow {
         } else {
             pipeline.latency_definition()
         };
+        // With one motion, an interval over the seeds would show the noise of the tracker alone.
+        let over_seeds = |values: &[f64]| {
+            let interval = MeanInterval::of(values, confidence);
+            if sampling.is_one_motion { interval.without_interval() } else { interval }
+        };
         let sums_ms: Vec<f64> = trials.iter().filter_map(|trial| trial.tracking_and_rendering_ms).collect();
         let hz: Vec<f64> = trials.iter().filter_map(|trial| trial.updates_hz).collect();
         Self {
@@ -152,16 +157,16 @@ impl ComparisonRow {
             latency_ms: pooled(trials, |trial| &trial.latency_ms),
             head_to_light_ms: pooled(trials, |trial| &trial.head_to_light_ms),
             turn_to_light_ms: pooled(trials, |trial| &trial.turn_to_light_ms),
-            tracking_and_rendering_ms: MeanInterval::of(&sums_ms, confidence),
+            tracking_and_rendering_ms: over_seeds(&sums_ms),
             end_to_end: Budget::pooled(trials.iter().filter(|_| !is_reference).map(|trial| trial.budget)),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
-            updates_hz: MeanInterval::of(&hz, confidence),
+            updates_hz: over_seeds(&hz),
             due: sum(trials.iter().map(|trial| Some(trial.due?.due))),
             not_shown: sum(trials.iter().map(|trial| Some(trial.due?.not_shown()))),
             late_regions: sum(trials.iter().map(|trial| trial.due.map(|_| trial.late_regions))),
             error: ErrorSpread::of(trials, sampling),
             window: trials.first().and_then(|trial| trial.window),
-            causes: causes(trials, confidence),
+            causes: causes(trials, sampling),
             predictors: Vec::new(),
             triangles_possible: None,
             triangles_definition: String::new(),
@@ -197,7 +202,7 @@ impl ComparisonRow {
 pub(super) struct Sampling {
     /// Number of seeds.
     pub(super) seeds: usize,
-    /// True if the head moves the same way for every seed, because the motion is a recording.
+    /// True if the head moves the same way for every seed, for example because the motion is a recording.
     pub(super) is_one_motion: bool,
     /// Confidence of all intervals, between 0 and 1.
     pub(super) confidence: f64,
@@ -219,7 +224,11 @@ fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics
 }
 
 /// Returns the contributions of all causes to the mean error. The interaction of the causes comes last.
-fn causes(trials: &[&Trial], confidence: f64) -> Vec<CauseShare> {
+fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
+    let interval = |px: &[f64]| {
+        let interval = MeanInterval::of_signed(px, sampling.confidence);
+        if sampling.is_one_motion { interval.without_interval() } else { interval }
+    };
     let split: Vec<_> = trials.iter().filter_map(|trial| trial.causes.as_ref()).collect();
     if split.is_empty() {
         return Vec::new();
@@ -232,12 +241,12 @@ fn causes(trials: &[&Trial], confidence: f64) -> Vec<CauseShare> {
             .filter(|part| part.cause == cause)
             .map(|part| part.px)
             .collect();
-        CauseShare { cause: Some(cause), px: MeanInterval::of_signed(&px, confidence) }
+        CauseShare { cause: Some(cause), px: interval(&px) }
     };
     let mut shares: Vec<CauseShare> = Cause::ALL.into_iter().map(of_cause).collect();
     // The part of the error that no single cause explains comes last.
     let interaction: Vec<f64> = split.iter().map(|causes| causes.interaction_px).collect();
-    shares.push(CauseShare { cause: None, px: MeanInterval::of_signed(&interaction, confidence) });
+    shares.push(CauseShare { cause: None, px: interval(&interaction) });
     shares
 }
 

@@ -57,14 +57,23 @@ struct PictureFiles {
     is_complete: bool,
 }
 
+/// The file of rows, which is open for writing.
+#[derive(Debug)]
+struct Rows {
+    file: File,
+    /// Number of rows in the file.
+    count: usize,
+    /// Length of the file in bytes.
+    end: u64,
+}
+
 /// The finished rows of a comparison, stored in one folder.
 #[derive(Debug)]
 pub struct CompareStore {
     folder: PathBuf,
     /// Rows that an earlier process has finished.
     found: Vec<ComparisonRow>,
-    /// The file of rows, and the number of its rows.
-    rows: Mutex<(File, usize)>,
+    rows: Mutex<Rows>,
     /// Lock of the folder, held as long as the store exists.
     _lock: File,
 }
@@ -77,23 +86,28 @@ impl CompareStore {
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
-        let (before, mut lines, mut end) = read(&path)?;
-        if resume {
+        let text = whole_lines(&path)?;
+        let mut lines = (1..).zip(text.split_inclusive(|byte| *byte == b'\n'));
+        let before: Option<Header> = lines.next().map(|(number, line)| parsed(&path, number, line)).transpose()?;
+        let mut end = text.len() as u64;
+        // Rows are read only if they are kept, because another version may have written them.
+        let found: Vec<ComparisonRow> = if resume {
             header.check(&path, before.as_ref())?;
+            let row = |(number, line)| parsed::<Line>(&path, number, line)?.row_in(folder);
+            lines.map(row).collect::<Result<_, _>>()?
         } else {
-            let of = before.map_or(0, |before| before.rows.len());
-            if !lines.is_empty() && lines.len() < of {
-                return Err(StudyError::Unfinished { path: path.display().to_string(), rows: lines.len(), of });
+            let (rows, of) = (lines.count(), before.map_or(0, |before| before.rows.len()));
+            if rows > 0 && rows < of {
+                return Err(StudyError::Unfinished { path: path.display().to_string(), rows, of });
             }
-            (lines, end) = (Vec::new(), 0);
-        }
-        let mut file = opened(&path, end)?;
+            end = 0;
+            Vec::new()
+        };
+        let mut rows = Rows { file: opened(&path, end)?, count: found.len(), end };
         if end == 0 {
-            put(&mut file, &path, &line_of(header))?;
+            rows.put(&path, &line_of(header))?;
         }
-        let found: Vec<ComparisonRow> = lines.into_iter().map(|line| line.row_in(folder)).collect::<Result<_, _>>()?;
-        let rows = Mutex::new((file, found.len()));
-        Ok(Self { folder: folder.to_owned(), found, rows, _lock: lock })
+        Ok(Self { folder: folder.to_owned(), found, rows: Mutex::new(rows), _lock: lock })
     }
 
     /// Returns the number of rows that an earlier process has finished.
@@ -112,13 +126,13 @@ impl CompareStore {
     /// changes no result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = rows.1 + 1;
+        let number = rows.count + 1;
         // The pictures come first, because the line names them.
         let picture = row.picture.as_ref().map(|picture| self.put_picture(number, picture)).transpose()?;
         let text = line_of(&Line { by_field: row.by_field.clone(), picture, row });
         let path = self.folder.join(ROWS_FILE);
-        put(&mut rows.0, &path, &text)?;
-        rows.1 = number;
+        rows.put(&path, &text)?;
+        rows.count = number;
         parsed::<Line>(&path, number + 1, text.as_bytes())?.row_in(&self.folder)
     }
 
@@ -177,18 +191,15 @@ impl Line {
     }
 }
 
-/// Reads the header, the rows, and the length in bytes up to the end of the last complete line. All are empty if the
-/// file does not exist.
-fn read(path: &Path) -> Result<(Option<Header>, Vec<Line>, u64), StudyError> {
-    let bytes = match fs::read(path) {
+/// Returns the complete lines of a file, or nothing if the file does not exist.
+fn whole_lines(path: &Path) -> Result<Vec<u8>, StudyError> {
+    let mut bytes = match fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         bytes => bytes.map_err(SweepError::io(path, "cannot be read"))?,
     };
     let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-    let mut lines = (1..).zip(bytes[..whole].split_inclusive(|byte| *byte == b'\n'));
-    let header = lines.next().map(|(number, line)| parsed(path, number, line)).transpose()?;
-    let rows = lines.map(|(number, line)| parsed(path, number, line)).collect::<Result<_, _>>()?;
-    Ok((header, rows, whole as u64))
+    bytes.truncate(whole);
+    Ok(bytes)
 }
 
 fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, StudyError> {
@@ -198,6 +209,15 @@ fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8])
     })
 }
 
-fn put(file: &mut File, path: &Path, line: &str) -> Result<(), StudyError> {
-    Ok(file.write_all(line.as_bytes()).map_err(SweepError::io(path, "cannot be written"))?)
+impl Rows {
+    /// Appends a line. A line that cannot be written completely is removed, so that the lines before it stay readable.
+    fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
+        if let Err(error) = self.file.write_all(line.as_bytes()) {
+            // The first error is the one to report.
+            let _ = self.file.set_len(self.end);
+            return Err(SweepError::io(path, "cannot be written")(error).into());
+        }
+        self.end += line.len() as u64;
+        Ok(())
+    }
 }
