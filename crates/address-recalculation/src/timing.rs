@@ -107,8 +107,8 @@ fn rule(holds: bool, name: &'static str, expected: &'static str, found: u64) -> 
 }
 
 impl ScanTiming {
-    /// Checks all parameters against their limits. Visible pixels and lines with their blanking must fit into a line
-    /// and a field.
+    /// Checks all parameters against their limits. A line must have room for the visible pixels and their blanking. A
+    /// field must have room for the visible lines and their blanking.
     ///
     /// # Errors
     ///

@@ -146,8 +146,8 @@ impl Cpu {
         self.time.fetch.number_states_from(shelf.cache_states);
     }
 
-    /// Returns the decoded program and its remembered clocks to `shelf`. Returns true if other processors can use them.
-    /// If a store has changed the program in memory, the decoded code is dropped and the result is false.
+    /// Moves the decoded program and its remembered clocks back to `shelf`. Returns true if other processors can use
+    /// this program. If a store has changed the program in memory, drops the decoded code and returns false.
     pub fn close(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut shelf.numbers);
         shelf.cache_states = self.time.fetch.states();

@@ -8,8 +8,8 @@ use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
-/// Source operands of a floating-point instruction. They are read before either half of a pair writes, but include a
-/// result that is just leaving the pipe.
+/// Source operands of a floating-point instruction. Both operands are read before either half of a pair writes a
+/// result. A result that is just leaving the pipe is already readable.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,

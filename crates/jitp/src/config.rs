@@ -33,15 +33,15 @@ pub enum Viewpoint {
     Dual(Interpolation),
 }
 
-/// Drawing schedule: whether strips or blocks are drawn, and in which order.
+/// Drawing schedule: the choice between strips and blocks, and the order in which they are drawn.
 #[derive(Clone, Debug)]
 pub enum DrawingSchedule {
     /// Draws strips of a field from top to bottom.
     Beam {
         /// Times for which the picture is computed.
         viewpoint: Viewpoint,
-        /// True if strips reach the frame buffer just before the beam scans them. False if they reach it one field
-        /// earlier.
+        /// True if strips reach the frame buffer just before the beam scans them. False if the strips reach the frame
+        /// buffer one field earlier.
         racing: bool,
         /// Number of rows of a strip: 1 to 128.
         strip_rows: u32,

@@ -1,12 +1,13 @@
-//! Search for the primitives in the regions of a strip or of a batch of blocks, as work of a board.
+//! CPU work of a search for the primitives in the regions of a strip, or in the regions of a batch of blocks.
 //!
-//! The work interpolates the primitives, finds those in each region, and lists the messages that draw them.
+//! The work interpolates primitives, finds the primitives in each region, and lists the messages that draw them.
 
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// Work that interpolates the primitives near some regions, finds them, and lists their messages.
+/// Work that interpolates the primitives near some regions, finds the primitives in each region, and lists the messages
+/// that draw them.
 pub(crate) struct StripSearchWork<'a> {
     pub(crate) searching: WindowSearchWork<'a>,
     /// Interpolation before the search. `None` if the display list was transformed for one view only.

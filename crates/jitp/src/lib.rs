@@ -16,10 +16,10 @@
 //! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). Its regions are 128 pixels
 //!   wide. They use the renderers in turn. No second buffer is needed: one field is written while the other one is
 //!   scanned, or each line is written just before the beam.
-//! - The [`Viewpoint`] tells for which time a strip is drawn. This can be one time for the whole field (a conventional
-//!   picture), or one for each strip. With a *dual display list*, every vertex is transformed for the start T0 and the
-//!   end T1 of the field. Strips are interpolated between both, on the screen or in eye space before the division by
-//!   depth ([`Interpolation`]).
+//! - The [`Viewpoint`] sets the time for which a strip is drawn. This can be one time for the whole field (a
+//!   conventional picture), or one for each strip. With a *dual display list*, every vertex is transformed for the
+//!   start T0 and the end T1 of the field. Strips are interpolated between both, on the screen or in eye space before
+//!   the division by depth ([`Interpolation`]).
 //! - *Racing the beam* is a separate choice. A strip is ordered either just in time for the beam, or one field earlier.
 //!   In the second case the whole field is complete before its retrace.
 //! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. These

@@ -1,4 +1,4 @@
-//! Assembly of the master's orders, as work of its board.
+//! CPU work of assembling the master's orders.
 
 use crate::protocol::DrawingOrder;
 use pphigs::{TransformCost, assemble_order};

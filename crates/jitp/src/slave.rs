@@ -242,7 +242,7 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks of the random order, and tells the master that the slave can take another order.
+    /// Draws the next blocks of the random order, and reports to the master that the slave can take another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;

@@ -1,4 +1,4 @@
-//! TRANSFORM of the whole display list as work of a board.
+//! CPU work of a TRANSFORM of the whole display list.
 
 use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, TriangleEndsRecorder};
 use pxpl5_geometry::Viewport;

@@ -31,7 +31,7 @@ const EDIT_WORDS: u32 = 17;
 const _: () =
     assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit is taken for an endless loop.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as an endless loop.
 const BUDGET: u64 = 20_000;
 
 /// Work of the EDIT step, which stores the new model matrices of a view's edited structures.

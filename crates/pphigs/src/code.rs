@@ -1,5 +1,4 @@
-//! TRANSFORM as work of a board. The time comes from the timing table, or from i860 code that runs over the board's
-//! memory.
+//! CPU work of TRANSFORM. The time comes from the timing table, or from i860 code that runs over the board's memory.
 //!
 //! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
 //! Such code is called a *kernel*. Each structure of the display list takes one call of each of the two kernels. All
@@ -39,8 +38,8 @@ pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 /// to nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds its limit is taken for
-/// an endless loop.
+/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds its limit counts as an
+/// endless loop.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
@@ -512,7 +511,7 @@ impl Pass {
 }
 
 /// Stores the start and end address of each bin of a context, for the code that hands over regions. The table of bins
-/// cannot keep them, because the other context will overwrite it.
+/// cannot keep these addresses, because the other context will overwrite the table.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,

@@ -1,5 +1,5 @@
-//! Handover of a region's bin to the ring, as work of a board. The code lists the messages of the region's commands as
-//! pieces of memory.
+//! CPU work of handing over a region's bin to the ring. The code lists the messages of the region's commands as pieces
+//! of memory.
 //!
 //! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
 //! where they are in memory. By the timing table each entry takes `token_entry_ns`.
@@ -40,7 +40,7 @@ pub(crate) const MESSAGE_BYTES: u32 = 16;
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit is taken for an endless loop.
+/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as an endless loop.
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 

@@ -10,7 +10,7 @@
 pub(crate) const CODE: u32 = 0x1000;
 /// Address of the code that finds which of six views contain a primitive.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Address of the code that edits structures and places them at the beginning of a pass.
+/// Address of the code at the beginning of a pass, which edits structures and places them for an eye.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
 /// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;

@@ -15,11 +15,11 @@
 //! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. The words of their
 //!   commands are computed on demand, from the same transformed vertices.
 //! - [`TransformCost`]: counted work of a TRANSFORM, and its time by the timing table.
-//! - [`TransformWork`]: TRANSFORM as work of a board. Its time comes from the table or from i860 code, which makes the
+//! - [`TransformWork`]: the CPU work of TRANSFORM. Its time comes from the table or from i860 code, which makes the
 //!   same words.
 //! - [`CubeTransform`]: TRANSFORM of six views around an eye, as i860 code.
-//! - [`BinHandoffWork`]: handover of a region's bin to the ring, as work of a board.
-//! - [`WindowSearchWork`]: search for the primitives in rectangles of the screen without bins, as work of a board.
+//! - [`BinHandoffWork`]: the CPU work of handing over a region's bin to the ring.
+//! - [`WindowSearchWork`]: the CPU work of searching for the primitives in rectangles of the screen, without bins.
 //! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands of a strip
 //!   of lines for a view in between, as i860 code.
 //! - [`assemble_order`]: assembly of an order, the message of a master GP to its slaves, as i860 code.

@@ -1,5 +1,5 @@
-//! Assembly of an order, the message of a master GP to its slaves, as work of a board. The code is kernels/order.s, by
-//! the project's own rules (kernels/order_rules.md).
+//! CPU work of assembling an order, which is the message of a master GP to its slaves. The code is kernels/order.s.
+//! This project made the rules for the code (kernels/order_rules.md).
 
 use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
 use i860::Program;
@@ -8,7 +8,7 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Instruction limit, twice the need of the longest message. Code that exceeds the limit is taken for an endless loop.
+/// Instruction limit, twice the need of the longest message. Code that exceeds the limit counts as an endless loop.
 const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 
 /// Largest number of words of an order before its views.

@@ -1,10 +1,10 @@
-//! Search of the primitives in *windows*, rectangles of the screen without bins, as work of a board. A window is a
-//! strip of lines or a block.
+//! CPU work of searching for the primitives in *windows*, which are rectangles of the screen without bins. A window is
+//! a strip of lines or a block.
 //!
 //! [`Pass::keep`] stores the result of a TRANSFORM in a part of memory: commands, and the bounding box of each command.
 //! [`WindowSearchWork`] finds the primitives in each requested window, and lists the messages that draw the window. The
-//! code is kernels/windows.s, by the project's own rules (kernels/windows_rules.md). By the timing table each primitive
-//! found in a window takes `bin_entry_ns`.
+//! code is kernels/windows.s. This project made the rules for the code (kernels/windows_rules.md). By the timing table
+//! each primitive found in a window takes `bin_entry_ns`.
 
 use crate::begin::PassStartWork;
 use crate::code::{Next, budget, sphere_kernel};
@@ -221,7 +221,7 @@ pub struct SearchOutput {
 }
 
 impl SearchOutput {
-    /// Reads the listed messages, in the order of the windows.
+    /// Reads the messages that the search has listed, in the order of the windows.
     ///
     /// # Errors
     ///

@@ -193,7 +193,7 @@ impl<const N: usize> Ports<N> {
     }
 }
 
-/// A condition for each lane: all bits are set if it is true, otherwise none.
+/// A condition for each lane: all bits are set if the condition is true, and no bit is set otherwise.
 type Mask<const N: usize> = [u64; N];
 
 #[inline(always)]

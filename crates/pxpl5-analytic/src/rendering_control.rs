@@ -191,7 +191,8 @@ impl StereoModel {
     fn frame(&self, history: &mut History, frame: usize, eyes: &[Load]) -> StereoTimes {
         let mut times = StereoTimes::default();
         let first = frame * self.eyes;
-        // SEND begins when the host knows that the previous EDIT is done, and its application has finished.
+        // SEND begins after two events: the host receives the end of the previous EDIT, and the host's application
+        // finishes.
         let application_ns = self.host.application_span(mix(frame as u64)).as_ms() * 1e6;
         let sent_ns = history.edited_ns + self.order_ns() + application_ns + self.host_ns;
         // EDIT of the first eye also needs earlier pictures to have passed TRANSFORM, RENDER and COPY.

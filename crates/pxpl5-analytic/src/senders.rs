@@ -119,7 +119,8 @@ const COLUMNS: usize = REGIONS / 4;
 
 /// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
 ///
-/// Returns two times: when the last clump was accepted, and when the first GP knows this and is free.
+/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received all
+/// reports of this and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -157,8 +158,8 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
     /// the last word has entered the FIFO.
     ///
-    /// A word enters when the word one FIFO depth before it has left. The words of a command leave when the command
-    /// starts. A command starts when all its words have arrived and the previous command has ended.
+    /// A word enters when the word that is one FIFO depth ahead of it has left. The words of a command leave when the
+    /// command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
         let last = first + command.words - 1.0;

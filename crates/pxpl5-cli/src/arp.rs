@@ -30,7 +30,8 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Simulate one walk through a scene; print numbers of draws, update rates and the width of the gaps at cuts.
+    /// Simulate one walk through a scene; print the numbers of draws, the update rates, and the widths of the gaps
+    /// where objects are cut.
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),

@@ -35,7 +35,7 @@ impl clap::Args for PipelineOptions {
         let registry = registry();
         let names: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
         let pipeline = Arg::new("pipeline").long("pipeline").value_name("PIPELINE").help(names.join(", "));
-        // A heading of their own puts these options behind those of all pipelines.
+        // With a separate heading, the help lists these options after the options of all pipelines.
         const HEADING: &str = "Settings of single pipelines";
         // Each key of a registered pipeline becomes an option whose syntax depends on the type of its values.
         registry.keys().into_iter().fold(command.arg(pipeline), |command, (key, families)| {

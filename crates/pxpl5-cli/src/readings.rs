@@ -74,7 +74,7 @@ fn text(readings: &Readings, rows: usize) -> String {
             fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
         }
     }
-    // The summary tells how far the choice is from unique.
+    // The summary gives the number of interpretations that are as good as the best one.
     let _ = writeln!(
         text,
         "\n{} interpretations are as good as the best within the printed digits ({:.2} % of a mean error).",

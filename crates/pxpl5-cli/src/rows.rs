@@ -190,7 +190,7 @@ pub(crate) fn renamed(old: &str) -> Option<String> {
                 return Some(format!("causes.{cause}.px.mean"));
             }
             let statistics = ["latency_ms", "head_to_light_ms", "prediction_interval_ms"];
-            // Statistics had an underscore where JSON has a dot.
+            // An old name has an underscore before `mean` or `sd`, and JSON has a dot there.
             let (name, end) = old.rsplit_once('_').filter(|(_, end)| ["mean", "sd"].contains(end))?;
             return statistics.contains(&name).then(|| format!("{name}.{end}"));
         }

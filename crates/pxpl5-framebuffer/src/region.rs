@@ -50,7 +50,7 @@ impl Segment {
 }
 
 impl RegionWrite {
-    /// Makes a region none of whose messages has arrived.
+    /// Creates a region of which no message has arrived.
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };

@@ -6,8 +6,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Number of remembered fields: the newest two of each parity. One of each parity is not enough, because the current
-/// field may not have reached a line yet.
+/// Number of remembered fields: the newest two of each parity. One field of each parity is not enough, because the beam
+/// may not have reached a line in the current field yet.
 const REMEMBERED: usize = 4;
 
 /// Numbers of the last fields that were scanned from a buffer, the newest field first.

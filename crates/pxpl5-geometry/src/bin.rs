@@ -146,7 +146,8 @@ impl Binner {
         })
     }
 
-    /// Returns the regions that hold pixels of `x` and `y`, and for which `test(column, row)` is true.
+    /// Returns the regions with pixels in the columns `x` and rows `y`, as far as `test` is true for them. The
+    /// arguments of `test` are a region's column and row in the grid of regions.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));

@@ -147,8 +147,8 @@ impl Conic {
         }
     }
 
-    /// Returns the greatest absolute value at the corners of a rectangle. A concave conic is nowhere larger in the
-    /// rectangle than this value or its peak.
+    /// Returns the greatest absolute value at the corners of a rectangle. In the rectangle, a concave conic is at most
+    /// the larger of two values: this value and the conic's peak.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
         let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
         values.fold(0.0, f64::max)

@@ -41,11 +41,11 @@ use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 /// Optimization level of the kernel's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// Code as from a compiler without optimization: every statement loads its operands from the stack frame and stores
-    /// its result there. All functions are inlined, so the code exceeds the instruction cache.
+    /// Code like the output of a compiler without optimization: every statement loads its operands from the stack frame
+    /// and stores its result there. All functions are inlined, so the code exceeds the instruction cache.
     Straight,
-    /// Code as from a good compiler of about 1990: functions, loops, local variables in registers, scalar operations
-    /// (kernels/compiled_rules.md).
+    /// Code like the output of a good compiler of about 1990: functions, loops, local variables in registers, scalar
+    /// operations (kernels/compiled_rules.md).
     Compiled,
     /// Hand-written code in dual-instruction mode: two loops over batches of vertices or triangles. Each loop fits the
     /// instruction cache.

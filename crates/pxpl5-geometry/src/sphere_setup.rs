@@ -15,8 +15,8 @@ use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SphereSetup {
-    /// Silhouette expression: a pixel is inside where it is at least 0. Its value fits 48 bits within the sphere's
-    /// regions.
+    /// Silhouette expression. A pixel is inside the sphere if the expression is at least 0 at this pixel. Its value
+    /// fits 48 bits within the sphere's regions.
     ///
     /// Its unit is not that of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so that the root needs no
     /// factor.

@@ -16,10 +16,11 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// Code as from a compiler without optimization. The code is nearly twice as large as the instruction cache.
+    /// Code like the output of a compiler without optimization. The code is nearly twice as large as the instruction
+    /// cache.
     Unoptimised,
-    /// Code as from a good compiler of about 1990. Slats of 1994 and 1995 had such code, which was too large for the
-    /// instruction cache (I3D95).
+    /// Code like the output of a good compiler of about 1990. Slats of 1994 and 1995 had such code, which was too large
+    /// for the instruction cache (I3D95).
     Compiled,
     /// Code scheduled by hand in dual-instruction mode, small enough for the instruction cache. Optimized PPHIGS had
     /// such code (TR94). With such code, Slats would have been about 3 times faster (I3D95).

@@ -259,7 +259,8 @@ const FIGURES_S: f64 = 36.0;
 /// that is simulated with events.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
-/// CPU seconds of the figures at all levels, of a random experiment at all levels, and of all speeds.
+/// CPU seconds of three computations: the figures at all levels, one random experiment at all levels, and the
+/// measurement of all speeds.
 const LEVELS_S: f64 = 56.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.52;
 const SPEEDS_S: f64 = 23.0;

@@ -53,8 +53,8 @@ impl Knob {
         }
     }
 
-    /// Returns the machine with 10 % more of the resource, after the old and new value. `None` if the machine cannot
-    /// have more.
+    /// Returns three items: the old value, the new value, and the machine with 10 % more of the resource. `None` if the
+    /// machine cannot have more.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };

@@ -67,7 +67,8 @@ impl SeenRow {
     }
 }
 
-/// The columns and rows that two rows of pixels reach together, column by column.
+/// Ranges of depths, columns and rows between two neighbouring rows of pixels. Each list has one number for each pixel
+/// of a row.
 #[derive(Debug, Default)]
 struct Pairs {
     near: Vec<f32>,
@@ -77,7 +78,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Computes the smaller and the larger number of each pair.
+    /// Computes the smaller and the larger number for each pair of pixels, one above the other.
     fn join(&mut self, above: &SeenRow, below: &SeenRow) {
         smaller(&mut self.near, &above.old_depth, &below.old_depth);
         larger(&mut self.far, &above.old_depth, &below.old_depth);
@@ -241,7 +242,7 @@ impl Target {
         for x in 1..count {
             let is_surface = far[x - 1].max(far[x]) <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {
-                // Each pixel ends half a pixel beside its middle, where its surface ends.
+                // The surface ends between these pixels. So each pixel ends half a pixel beside its middle.
                 for (seen, row) in rows.iter().zip([upper_row, upper_row + 1]) {
                     self.draw_pixel(seen, row, x - 1);
                     self.draw_pixel(seen, row, x);

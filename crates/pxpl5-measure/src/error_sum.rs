@@ -280,7 +280,7 @@ impl Evaluation {
         let by = reprojector.setting.by;
         let found = moved((&self.evaluator, &self.shown, run), (by, &newest.pose), pixel.place, field, pixel.begins);
         let Collected { errors, eye, .. } = collected;
-        // Only a device with depth knows that a pixel's content is hidden in the picture.
+        // Only a device with depth can detect that a pixel's content is hidden in the picture.
         if by == Warp::Depth && !matches!(found, Moved::NotComplete(_)) {
             eye.looked_at(matches!(found, Moved::Beyond), matches!(found, Moved::Hidden));
         }

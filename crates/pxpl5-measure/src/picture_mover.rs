@@ -14,7 +14,7 @@ use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A device and the run whose pictures it moves.
+/// The pictures of a run, and the device that moves these pictures.
 #[derive(Debug)]
 pub(crate) struct PictureMover<'a> {
     run: FinalResults<'a>,

@@ -83,7 +83,7 @@ enum At {
     Begin,
 }
 
-/// The steps found so far on the way backwards, without a gap between steps.
+/// The steps found so far, from the end of the latency backwards. There is no gap between two steps.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,

@@ -1,5 +1,5 @@
-//! Conversion of any value that `numpy.asarray` takes to arrays of numbers. Lists, arrays of any element type and the
-//! arrays of this package itself are accepted.
+//! Conversion to arrays of numbers, for any value that `numpy.asarray` accepts. Lists, arrays of any element type and
+//! the arrays of this package itself are accepted.
 
 use crate::errors::wrong_setting;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// Progress of long work, and a flag that asks the work to stop.
+/// Progress of a long computation, and a flag that stops the computation.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     done: AtomicU64,

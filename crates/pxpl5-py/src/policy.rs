@@ -9,7 +9,8 @@ use pyo3::types::PyDict;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A policy (a Python function that assigns regions to renderers), with the exception that it has raised, if any.
+/// A policy, which is a Python function that assigns regions to renderers. `raised` holds an exception of the policy
+/// that is not yet reported.
 pub(crate) struct Asked {
     policy: Py<PyAny>,
     name: String,

@@ -23,7 +23,7 @@ type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
 /// A thread that owns a machine and executes jobs on it, one after the other.
 pub(crate) struct MachineThread {
     jobs: Mutex<Sender<Job>>,
-    /// True asks a job that takes long to end.
+    /// True to end a long job early.
     stop: Arc<AtomicBool>,
 }
 

@@ -291,7 +291,7 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that are not the program of the command that `label` names.
+/// Returns the error for valid instructions that differ from the program of a command. `label` identifies the command.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }

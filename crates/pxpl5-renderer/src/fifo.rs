@@ -259,7 +259,8 @@ impl InputFifo {
     }
 
     /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. Received commands that have not ended by `now` count as executed without a gap from `now` on.
+    /// event. The result assumes that the received commands that have not ended by `now` run without a gap from `now`
+    /// on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -485,7 +486,7 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
-                    // A word enters when the word one FIFO depth before it has left.
+                    // A word enters when the word that is one FIFO depth ahead of it has left.
                     let room =
                         if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;

@@ -15,10 +15,10 @@
 //!    ([`RendererTiming`], [`Renderer`]).
 //! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
 //!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
-//! 3. A triangle enables all pixels. Each of three edges disables the pixels where it is negative. Z disables the
-//!    pixels that are not nearer, and is stored in the others. Then follow colours (Gouraud) or normals (Phong). The
-//!    silhouette of a sphere is a quadratic, whose square root gives depth, normal and light. [`Shade`] turns normals
-//!    into colour once, at the end of the frame.
+//! 3. A triangle enables all pixels. Three edge expressions then disable the pixels at which an edge expression is
+//!    negative. Z disables the pixels that are not nearer, and is stored in the others. Then follow colours (Gouraud)
+//!    or normals (Phong). The silhouette of a sphere is a quadratic, whose square root gives depth, normal and light.
+//!    [`Shade`] turns normals into colour once, at the end of the frame.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
 //!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] works on values,
 //!    only at the pixels that a command can change. The suite in [`conformance`] tests that all three agree in the 208

@@ -142,7 +142,7 @@ pub enum RingError {
     Unfinished {
         /// Number of delivered messages: messages whose last word was accepted.
         delivered: usize,
-        /// Number of messages in the whole traffic.
+        /// Total number of messages, delivered or not.
         of: usize,
         /// Time at which the run ended.
         until: Time,

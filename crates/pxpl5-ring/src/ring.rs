@@ -450,7 +450,8 @@ impl Ring {
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
         }
         let elastic = self.is_elastic(flight.destination);
-        // Elastic receivers get the message after its last word, others its announcement after the first slot.
+        // An elastic receiver gets the message after the last word. Another receiver gets the announcement after the
+        // first slot.
         let message = if flight.slots_left == 0 || !elastic { flight.message.take() } else { None };
         match message {
             Some(message) if elastic => {

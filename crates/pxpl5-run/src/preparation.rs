@@ -28,7 +28,8 @@ pub(crate) struct Preparation {
 impl Experiment {
     /// Performs the dry run now and stores its result in the experiment.
     ///
-    /// A later run with another predictor reuses the stored result. No other setting must change after this call.
+    /// A later run with another predictor reuses the stored result. All other settings must stay the same after this
+    /// call.
     ///
     /// # Errors
     ///

@@ -20,9 +20,9 @@ use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// Returns the same scene with at most `n` primitives, and as many as its surfaces allow. A closed surface has an
-    /// even number of triangles, so the result can have one primitive less than an odd `n`. The ratio of spheres to
-    /// triangles stays the same.
+    /// Returns the same scene with at most `n` primitives. The scene keeps as many of them as its surfaces allow. A
+    /// closed surface has an even number of triangles, so the result can have one primitive less than an odd `n`. The
+    /// ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.

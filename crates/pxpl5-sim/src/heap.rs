@@ -58,7 +58,7 @@ impl<T: Keyed> QuadHeap<T> {
         Some(first)
     }
 
-    /// Returns the child of a node that has the least key, with its index.
+    /// Returns the index and the item of the child with the least key, among the children of a node.
     fn least_child(&self, place: usize) -> Option<(usize, T)> {
         let begin = place * CHILDREN + 1;
         let end = self.items.len().min(begin + CHILDREN);

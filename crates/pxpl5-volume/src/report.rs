@@ -33,7 +33,7 @@ pub struct VolumeReport {
     pub samples: u64,
     /// Number of triangles, lines and points of the scene.
     pub triangles: u64,
-    /// Number of slices drawn. It is less than the number of slices shown if slices are mirrored.
+    /// Number of slices drawn. If slices are mirrored, more slices are shown than drawn.
     pub slices_rendered: u64,
     /// Number of times that the whole scene is drawn for each slice.
     pub passes: u64,

@@ -85,7 +85,8 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
 /// before the first picture. It is also `null` for a pipeline whose picture combines several samples.
 ///
 /// The field that the beam draws now is not yet evaluated. A picture in this field counts as shown if it is complete.
-/// It also counts if the previous picture was shown, and its last regions can still arrive ahead of the beam.
+/// An incomplete picture counts as shown only if the previous picture was shown, and if the missing regions can still
+/// arrive ahead of the beam.
 pub(crate) fn age(stepper: &Stepper) -> Value {
     let (now, record) = (stepper.now(), stepper.record());
     let field = stepper.period();

@@ -290,7 +290,7 @@ impl RegionMaster {
 
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
-        // A held region blocks its renderer; the renderer of a stored or copied one is free.
+        // A held region blocks its renderer. The renderer of a stored or copied region is free.
         self.renderers[renderer] = match token.end {
             RegionEnd::Held => RendererUse::Holding(token.drawing, token.region),
             RegionEnd::Stored | RegionEnd::Copied => RendererUse::Idle,

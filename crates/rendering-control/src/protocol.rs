@@ -15,7 +15,7 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token. The slave that holds it may send its commands of one region to one renderer.
+/// A token. The slave that holds the token may send the slave's commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: EyeDrawing,

@@ -22,7 +22,7 @@ struct SlaveState {
     /// The first frame that the master has not permitted for EDIT.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The bins of both contexts. A context is one of two sets of bins; `None` if it is empty.
+    /// The bins of both contexts. A context is one of two sets of bins. `None` for an empty context.
     bins: [Option<Arc<Pass>>; 2],
     regions_left: [u32; 2],
 }
@@ -115,8 +115,8 @@ async fn edit(
 /// Performs TRANSFORM: makes the commands of all primitives that the slave holds, and puts them into bins.
 ///
 /// If the bins of two drawings do not fit together, TRANSFORM waits. It begins when RENDER of the previous drawing has
-/// freed its bins. The simulated program knows the number of entries in advance; a real program would estimate it from
-/// the previous drawing.
+/// freed its bins. The simulated program has the number of entries in advance. A real program would estimate this
+/// number from the previous drawing.
 async fn transform(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -218,8 +218,8 @@ async fn walk(
     free_bins(gp, state, token.drawing)
 }
 
-/// Returns the message that passes a token to the next slave. The last slave's message tells the master that the region
-/// is finished.
+/// Returns the message that passes a token to the next slave. The last slave's message reports to the master that the
+/// region is finished.
 fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };

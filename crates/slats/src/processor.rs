@@ -53,7 +53,7 @@ struct Bottom {
     /// Number of renderers that copy top regions. All of them must have acknowledged their copies before the bottom
     /// copies start.
     copiers: usize,
-    /// True from the moment at which the field is requested for display until the chain is started.
+    /// True between two moments: the field is requested for display, and the chain of copies starts.
     is_taken: bool,
 }
 

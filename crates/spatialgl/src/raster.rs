@@ -28,7 +28,7 @@ pub enum Coverage {
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// paper**: the paper wants this coverage and finds that GPUs do not offer it.
+    /// paper**: the paper calls for this coverage, but states that GPUs do not offer it.
     Connected,
 }
 

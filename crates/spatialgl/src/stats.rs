@@ -11,7 +11,7 @@ pub struct VolumeStats {
     pub primitives: u64,
     /// Number of primitives with a corner outside the display's volume.
     pub outside_volume: u64,
-    /// Number of slices drawn. It is less than the number of slices shown if slices are mirrored.
+    /// Number of slices drawn. If slices are mirrored, more slices are shown than drawn.
     pub slices_rendered: u64,
     /// Number of times that the recorded commands are replayed for a slice.
     pub passes: u64,

@@ -1,5 +1,5 @@
-//! Numbers that follow by arithmetic from numbers printed in the paper. No simulation could change them, so they have
-//! no verdict.
+//! Numbers that are computed from numbers printed in the paper. No simulation could change these results, so the
+//! results have no verdict.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;

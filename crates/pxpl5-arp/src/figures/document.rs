@@ -281,7 +281,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Writes what follows for table 2 from the fact that cutting does not change the number of sections.
+/// Writes the consequences for table 2 of one fact: cutting does not change the number of sections.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();

@@ -71,7 +71,7 @@ impl Situation {
         } else {
             let corners: Vec<DVec3> = self.corners().iter().map(|[x, z]| DVec3::new(*x, 0.0, *z) * cell_m).collect();
             let path = Walk::new(&corners, 1.0)?;
-            // A walk between two corners returns to the first corner. Only the way there counts.
+            // A walk between two corners returns to the first corner. Only the way to the second corner counts.
             let way_m = if self == Self::Round { path.length_m() } else { path.length_m() / 2.0 };
             let cells = (0..CELLS_ACROSS).flat_map(|x| (0..CELLS_ACROSS).map(move |z| Cell { x, z }));
             let frames = (way_m * numbers.frame_hz) as u64;

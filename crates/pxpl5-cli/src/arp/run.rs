@@ -12,7 +12,8 @@ use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Simulate one walk through a scene; print numbers of draws, update rates and the width of the gaps at cuts.
+/// Simulate one walk through a scene; print the numbers of draws, the update rates, and the widths of the gaps where
+/// objects are cut.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json

@@ -58,7 +58,8 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
     ChartSeries { name: by.join(", "), points, look }
 }
 
-/// Returns the point of a group. It is hollow if pictures were not shown, because its mean is then of the others.
+/// Returns the point of a group. The point is hollow if some pictures were not shown, because the mean then covers only
+/// the shown pictures.
 fn point(group: &Group, across: f64) -> ChartPoint {
     ChartPoint { at: (across, group.mean), interval: group.interval, is_hollow: group.counts.has_missing_pictures() }
 }

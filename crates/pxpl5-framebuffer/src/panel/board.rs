@@ -9,8 +9,8 @@ use pxpl5_wire::display::{
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Frame buffer boards with panels that share a sync generator. There is one board for each picture that is drawn at
-/// the same time.
+/// Frame buffer boards with panels that share a sync generator. There is one board for each of the pictures that are
+/// drawn at the same time.
 ///
 /// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///

@@ -20,10 +20,12 @@ const USUAL_FIELDS: i64 = 300;
 
 impl CompareQuery {
     /// Sets the length of the runs, if the settings do not have one: the length of the recording that the head replays,
-    /// else five seconds. If the settings ask for more than the recording covers, they also get its length.
+    /// else five seconds. The runs also have the recording's length if the settings ask for more fields than the
+    /// recording covers.
     ///
-    /// Returns the length if it is that of a recording. A recording that is repeated without end has no length. Settings
-    /// may ask for more than the recording if they say that the head stands still behind its end.
+    /// Returns the length if a recording determines it. A recording that is repeated without end has no length.
+    /// Settings may ask for more fields than the recording covers if they state that the head stands still after the
+    /// last sample.
     ///
     /// # Errors
     ///

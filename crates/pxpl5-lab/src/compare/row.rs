@@ -61,7 +61,8 @@ pub struct ComparisonRow {
     pub eyes: usize,
     /// Number of seeds with which the row ran.
     pub seeds: usize,
-    /// True if the interval of the mean error is as narrow as the query asked for. `None` if the query did not ask.
+    /// True if the interval of the mean error is as narrow as the query requires. `None` if the query requires no
+    /// width.
     pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,

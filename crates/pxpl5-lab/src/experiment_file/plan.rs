@@ -281,7 +281,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Possible origins of primitive times, by name. True stands for the times of executed code.
+/// Possible origins of primitive times, by name. The value is true for the times of executed code.
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {

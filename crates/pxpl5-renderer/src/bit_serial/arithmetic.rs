@@ -170,7 +170,7 @@ impl Tile {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Returns the pixels where a < b: those where a - b, computed over `clocks` bits, ends with a borrow.
+    /// Returns the pixels in which a < b. In these pixels, the subtraction a - b over `clocks` bits ends with a borrow.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;

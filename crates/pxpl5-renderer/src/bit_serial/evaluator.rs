@@ -211,7 +211,8 @@ struct QuadraticBits {
 
 /// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Delayed bits of the coefficient of x, one for each level of the product.
+    /// Bits of the coefficient of x, one for each level of the product. Level n has the coefficient's bit of n clocks
+    /// ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

@@ -24,7 +24,7 @@ use pxpl5_wire::{Linear, Quadratic};
 /// region. A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
-    /// Silhouette expression of 48 bits; a pixel is inside where it is `>= 0`.
+    /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,

@@ -116,7 +116,7 @@ impl SlimTriangles {
 }
 
 /// Returns the value of each triangle's expression at the pixel (x, y) of this triangle. The result is a new array, so
-/// the compiler knows that no other data changes.
+/// the compiler can assume that no other data changes.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];

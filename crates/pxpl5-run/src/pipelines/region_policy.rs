@@ -243,7 +243,7 @@ impl Pipeline for PolicyPipeline {
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let shading = if self.shading == Shading::Phong { "phong" } else { "gouraud" };
-        // A key has a name of this program or a number, so a number stands for the policy's name.
+        // The value of a key is a number or a name that this program defines. So a number represents the policy's name.
         let digits = crate::Fingerprint::of(self.policy.name().as_bytes()).to_string();
         let number = digits.get(..15).and_then(|digits| u64::from_str_radix(digits, 16).ok());
         vec![("shading", KeyValue::Name(shading)), ("policy", KeyValue::Whole(number.unwrap_or_default()))]

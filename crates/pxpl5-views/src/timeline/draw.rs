@@ -195,8 +195,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws the label of a bar. Depending on the width of the bar, the label has letters and number, only letters, or
-    /// is left out.
+    /// Draws the label of a bar. The label of a wide bar has letters and a number, and the label of a narrower bar has
+    /// only letters. The narrowest bars have no label.
     fn label(&mut self, bar: &Bar, y: Units) {
         let begin = self.x(bar.begin).0;
         let end = self.x(bar.end).0;

@@ -47,8 +47,8 @@ pub struct BoundRow {
     pub ms: [f64; 4],
     /// Volumes per second if only the slowest part limits this rate.
     pub volumes_hz: f64,
-    /// Name of the slowest part: `renderers`, `ring`, `port` or `processors`. If parts are equally slow, it is the
-    /// first of them.
+    /// Name of the slowest part: `renderers`, `ring`, `port` or `processors`. If several parts are equally slow, the
+    /// name is that of the first of these parts.
     pub limited_by: &'static str,
 }
 
@@ -63,7 +63,8 @@ impl SliceBounds {
         Self { work, tiles, tile_words, copies: traffic.map_or(0, SliceTraffic::copies) }
     }
 
-    /// Returns the times of each part for these numbers of renderers and graphics processors, each 1 or more.
+    /// Returns the time that each part of a machine needs for a volume. The machine has these numbers of renderers and
+    /// graphics processors, each 1 or more.
     #[must_use]
     pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
         let clocks = self.work.clocks + self.copies * RendererTiming::PAPERS.backing_block_clocks;

@@ -32,7 +32,7 @@ struct UpdateProgress {
     transformed: usize,
     /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the display memory has been told which regions will arrive.
+    /// True if the regions that will arrive have been announced to the display memory.
     announced: bool,
     /// Number of regions that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,

@@ -12,7 +12,7 @@ const TOKEN: Word = 0x106;
 const ACCEPTED: Word = 0x107;
 const EDITS_DONE: Word = 0x108;
 
-/// A token. The slave that holds it may send its commands of one region to one renderer.
+/// A token. The slave that holds the token may send the slave's commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) update: PictureNumber,

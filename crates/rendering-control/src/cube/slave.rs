@@ -19,7 +19,7 @@ struct SlaveState {
     updates: VecDeque<FaceUpdate>,
     /// The first update that the master has not permitted for EDIT.
     next_edit: PictureNumber,
-    /// The bins of both contexts. A context is one of two sets of bins; `None` if it is empty.
+    /// The bins of both contexts. A context is one of two sets of bins. `None` for an empty context.
     bins: [Option<CubePass>; 2],
     /// For each context, the number of tokens that this slave has received for its bins.
     tokens: [u16; 2],

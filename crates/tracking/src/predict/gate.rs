@@ -14,8 +14,8 @@ pub struct ReportCounts {
     pub accepted: u64,
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
-    /// Number of reports rejected because of their time stamp. They were not newer than the last accepted report, or
-    /// followed it by less than [`table::Gate`]'s `interval`.
+    /// Number of reports rejected because of their time stamp. Such a report was not newer than the last accepted
+    /// report, or followed this report by less than [`table::Gate`]'s `interval`.
     pub untimely: u64,
     /// Number of reports rejected because a head cannot move so fast.
     pub jumps: u64,

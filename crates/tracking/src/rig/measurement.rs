@@ -206,8 +206,8 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Reads the passes of the pendulum off the traces. Each step of the D/A line gives one pass. The low point lies
-    /// before the step, and the screen steps to the same level after it. Returns `None` if the screen lacks one of
+    /// Finds the passes of the pendulum in the traces. Each step of the D/A line gives one pass. The low point lies
+    /// before this step. After this step, the screen steps to the same level. Returns `None` if the screen lacks one of
     /// these steps.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {

@@ -48,8 +48,8 @@ impl RasterOffset {
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)
     }
 
-    /// Returns the direction at which a viewer sees the drawn direction `drawn` at `t_ps`, on a raster that rotates as
-    /// a whole.
+    /// Returns the direction in which a viewer sees a point at `t_ps` that was drawn in the direction `drawn`. The
+    /// raster rotates as a whole.
     pub fn turned(&self, drawn: DVec3, t_ps: u64) -> DVec3 {
         let (yaw, pitch) = self.angles(t_ps);
         rotation::about_y(yaw) * (rotation::about_x(pitch) * drawn)
