@@ -25,7 +25,8 @@ class Head:
     predict: str = "kalman"
     #: The instant that a view is predicted for: ``middle``, ``first-pixel``, ``last-pixel`` or ``retrace``.
     aim: str = "middle"
-    #: The raster before the eyes: ``plain``, or ``vdrt``, shifted by what the pose was wrong.
+    #: The raster before the eyes: ``plain``, ``vdrt`` (shifted by the error of the pose), or a reprojection such as
+    #: ``rotation every line, 100 us``.
     raster: str = "plain"
     #: Meaning of the poses of the motion. ``scene``: the motion begins where the scene's own motion begins.
     #: ``world``: the poses are metres in the scene's coordinates.

@@ -240,7 +240,9 @@ impl Target {
         let [top, bottom] = [&pairs.rows[0][..count], &pairs.rows[1][..count]];
         let [near, far] = [&pairs.near[..count], &pairs.far[..count]];
         for x in 1..count {
-            let is_surface = far[x - 1].max(far[x]) <= near[x - 1].min(near[x]) * SAME_SURFACE;
+            // Corners behind the eye have no finite depth, and are no surface.
+            let farthest = far[x - 1].max(far[x]);
+            let is_surface = farthest < f32::INFINITY && farthest <= near[x - 1].min(near[x]) * SAME_SURFACE;
             if !is_surface {
                 // The surface ends between these pixels. So each pixel ends half a pixel beside its middle.
                 for (seen, row) in rows.iter().zip([upper_row, upper_row + 1]) {
@@ -387,6 +389,13 @@ mod tests {
     fn moved(depth: impl Fn(u32, u32) -> f32, now: &Pose) -> (RgbImage, u64) {
         let depths = DepthPicture::from_fn(SIZE[0], SIZE[1], depth);
         reproject_with_depth(&places(), &depths, &HmdView::ntsc(), &Pose::IDENTITY, now).expect("the size of the view")
+    }
+
+    /// A head that has passed a wall two metres ahead sees nothing of it.
+    #[test]
+    fn a_wall_behind_the_eye_is_not_seen() {
+        let now = Pose { position: DVec3::new(0.0, 0.0, -3.0), ..Pose::IDENTITY };
+        assert_eq!(moved(|_, _| 2.0, &now).1, 640 * 480);
     }
 
     #[test]

@@ -48,28 +48,20 @@ impl Experiment {
         policy: Option<Py<PyAny>>,
         phong: bool,
     ) -> PyResult<Self> {
-        let plan = settings.plan()?;
+        let mut plan = settings.plan()?;
         // A scene in the arguments replaces the scene in the settings.
         let scene = match scene {
             Some(scene) => Arc::clone(&scene.scene),
             None => py.detach(|| plan.load_scene()).map_err(wrong_setting)?,
         };
-        let mut native = plan.experiment(scene);
         let policy = policy.map(|policy| Arc::new(Asked::new(py, policy)));
-        // A policy needs a pipeline of its own, so the experiment is built again from the other settings.
+        // A policy in the arguments has a pipeline of its own. All other settings stay.
         if let Some(asked) = &policy {
             let shading = if phong { Shading::Phong } else { Shading::Gouraud };
             let policy: Arc<dyn RegionPolicy> = Arc::<Asked>::clone(asked);
-            let pipeline: Arc<dyn Pipeline> = Arc::new(PolicyPipeline::new(policy, shading));
-            native = Native::with(plan.machine.clone(), pipeline, Arc::clone(native.scene()))
-                .fields(plan.fields)
-                .seed(plan.seed)
-                .pixels(plan.pixels)
-                .level(plan.level);
-            if let Some(head) = &plan.head {
-                native = native.head(head.head());
-            }
+            plan.pipeline = Arc::new(PolicyPipeline::new(policy, shading));
         }
+        let mut native = plan.experiment(scene);
         // A motion in the arguments replaces the motion of the tracked head.
         if let Some(motion) = motion {
             let Some(head) = native.tracked_head().cloned() else {

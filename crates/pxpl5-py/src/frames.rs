@@ -56,6 +56,8 @@ impl Frames {
         loop {
             match py.detach(|| next(&mut pictures)) {
                 Ok(Ok(picture)) => {
+                    // A motion or a policy that has raised has no pictures.
+                    self.checks.check().inspect_err(|_| self.progress.stop())?;
                     *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = Some(pictures);
                     return Picture::of(py, picture, Vec::new()).map(Some);
                 }

@@ -46,7 +46,7 @@ impl Picture {
     /// Raises :class:`pxpl5.SettingError` with the expected and the found shape or type.
     #[new]
     fn new(py: Python<'_>, pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let mut array = py.import("numpy")?.call_method1("asarray", (pixels,))?;
+        let mut array = py.import("numpy")?.call_method1("asarray", (pixels,)).map_err(wrong_setting)?;
         // Integers of another type are taken if all of them fit. A cast alone would change those that do not.
         let bytes = array.call_method1("astype", ("uint8",));
         if let Ok(bytes) = bytes

@@ -47,7 +47,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     check_extensions(source, &root)?;
     let buffers = Buffers::of(source, &root, chunks.binary);
     model.more_file_bytes = buffers.file_bytes;
-    let held = parsed_bytes + buffers.decoded_bytes;
+    let held = parsed_bytes.saturating_add(buffers.decoded_bytes);
     let document = Document { source, root, buffers };
     let mut reader = Reader { document: &document, held, model, skipped: 0, skinned: 0, has_targets: false };
     reader.scene()?;
@@ -111,22 +111,31 @@ impl<'a> Reader<'a> {
             }
             None => roots_of(&root.nodes),
         };
-        // Nodes that wait, with the transform of their parent. A list instead of recursion allows any depth.
-        let mut waiting: Vec<(usize, DMat4)> = roots.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
-        let mut read = vec![false; root.nodes.len()];
-        while let Some((number, parent)) = waiting.pop() {
-            let Some(node) = root.nodes.get(number) else {
-                let found = format!("{} nodes", root.nodes.len());
-                return Err(source.part(format!("nodes[{number}]"), "a node with this index", found));
-            };
+        // Each node waits at most once, so the list of waiting nodes is not longer than the list of nodes.
+        let mut is_known = vec![false; root.nodes.len()];
+        let mut known = |number: usize| match is_known.get_mut(number).map(|known| std::mem::replace(known, true)) {
+            Some(false) => Ok(number),
             // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle has no end.
-            if std::mem::replace(&mut read[number], true) {
+            Some(true) => {
                 let found = "a second parent or a circle";
-                return Err(source.part(format!("nodes[{number}]"), "a node with at most one parent", found));
+                Err(source.part(format!("nodes[{number}]"), "a node with at most one parent", found))
             }
+            None => {
+                let found = format!("{} nodes", root.nodes.len());
+                Err(source.part(format!("nodes[{number}]"), "a node with this index", found))
+            }
+        };
+        // Nodes that wait, with the transform of their parent. A list instead of recursion allows any depth.
+        let mut waiting: Vec<(usize, DMat4)> = Vec::new();
+        for root in roots.into_iter().rev() {
+            waiting.push((known(root)?, DMat4::IDENTITY));
+        }
+        while let Some((number, parent)) = waiting.pop() {
+            let node = &root.nodes[number];
             let to_world = parent * transform(source, number, node)?;
-            let children = node.children.iter().flatten().rev();
-            waiting.extend(children.map(|child| (child.value(), to_world)));
+            for child in node.children.iter().flatten().rev() {
+                waiting.push((known(child.value())?, to_world));
+            }
             self.node(node, to_world)?;
         }
         Ok(())

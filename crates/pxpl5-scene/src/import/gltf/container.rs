@@ -94,7 +94,9 @@ impl<'a> Chunks<'a> {
                 _ => {}
             }
         }
-        self.json.len() + objects * OBJECT_BYTES + texts * TEXT_BYTES + numbers * NUMBER_BYTES
+        let of = |count: usize, bytes: usize| count.saturating_mul(bytes);
+        let lists = of(texts, TEXT_BYTES).saturating_add(of(numbers, NUMBER_BYTES));
+        self.json.len().saturating_add(of(objects, OBJECT_BYTES)).saturating_add(lists)
     }
 }
 
