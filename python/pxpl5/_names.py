@@ -34,6 +34,8 @@ QuantityName = Literal[
     "copy_begins_ms",
     "eye_ms",
     "to_light_ms",
+    "tracking_and_rendering_ms",
+    "error_px.n",
     "error_px.mean",
     "error_px.p50",
     "error_px.p90",

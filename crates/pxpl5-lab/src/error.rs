@@ -53,7 +53,7 @@ pub enum StudyError {
     /// The seeds of a comparison are not usable.
     #[error("expected {expected}, found {found}")]
     Seeds {
-        /// What was expected.
+        /// The expected seeds, in words.
         expected: String,
         /// The seed or the number of seeds in the query.
         found: u64,

@@ -253,8 +253,8 @@ impl Outcome {
         ])
     }
 
-    /// Returns a table with one row for each observed event, in the order of time: stages of programs, regions that
-    /// renderers copied, regions that arrived at displays, swaps, and messages if the run recorded traffic.
+    /// Returns a table with one row for each observed event, in the order of time. The events are stages of programs,
+    /// regions that renderers copied, regions that arrived at displays, and swaps.
     fn events(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let events: Vec<ObservedEvent> = py.detach(|| outcome.events().collect());

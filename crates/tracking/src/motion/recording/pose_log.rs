@@ -161,8 +161,8 @@ mod tests {
         let error = read("predictedDisplayTime,position_x,position_y,roll\n0,0,0,0\n").expect_err("no pose");
         assert_eq!(
             error.to_string(),
-            "line 1: expected the columns of a pose log, of which position_z, orientation_w, orientation_x, orientation_y, orientation_z \
-             are missing; found predictedDisplayTime, position_x, position_y, roll"
+            "line 1: expected all columns of a pose log, found predictedDisplayTime, position_x, position_y, roll without \
+             position_z, orientation_w, orientation_x, orientation_y, orientation_z"
         );
         let error = read("{\"predictedDisplayTime\": 1, \"yaw\": 2}\n").expect_err("no pose").to_string();
         assert!(error.contains("position_x") && error.ends_with("found predictedDisplayTime, yaw"), "{error}");
