@@ -74,6 +74,6 @@ mod tests {
     #[test]
     fn a_host_without_a_clock_has_no_rate() {
         let [_, text] = speed(&json!({"fields": 12, "host_seconds": null}));
-        assert_eq!(text.to_string(), "<p>12 fields; how long they took is not known.</p>");
+        assert_eq!(text.to_string(), "<p>12 fields; the host time is not known.</p>");
     }
 }
