@@ -15,8 +15,8 @@ use pxpl5::device::PixelWorker;
 use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, PeriodNumber, Pipeline, Pixels, Plan, PolicyPipeline,
-    RegionPolicy, Results, SurfaceId, Workstation, levels, registry, what_if,
+    Experiment as Native, ExperimentError, Host, Keep, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
+    Results, SurfaceId, Workstation, levels, registry, what_if,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
