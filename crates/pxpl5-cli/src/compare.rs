@@ -50,7 +50,8 @@ pub(crate) struct CompareArgs {
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
     /// Add seeds to each row until the interval of its mean error, from end to end, is narrower than this. The width is
-    /// a share of the mean (10%) or pixels (0.2px). Not for recordings, because more seeds do not move them.
+    /// a share of the mean (10%) or pixels (0.2px). Only for the motion `synthetic`, which differs
+    /// with the seed.
     #[arg(long, value_name = "WIDTH")]
     until_precision: Option<Precision>,
     /// Maximum number of seeds of a row with --until-precision.
