@@ -147,6 +147,8 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
 /// `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
+        // A row without a bootstrap keeps the column of rows.csv.
+        Value::Null if path == "error.bootstrap" => row.push((format!("{path}.block_fields"), Value::Null)),
         Value::Object(inner) => {
             for (key, value) in inner {
                 let path = if path.is_empty() { key } else { format!("{path}.{key}") };
