@@ -81,7 +81,7 @@ impl Counts {
     }
 
     fn idioms(&mut self, text: &str, path: &str, places: &mut Vec<String>) {
-        // Compare whole words, so that "in parts of" is not found in "contain parts of".
+        // Compare whole words, because "contain parts of" has the letters of the idiom "in parts of".
         let words: String =
             text.to_lowercase().chars().map(|c| if c.is_alphabetic() || c == '_' { c } else { ' ' }).collect();
         let words = format!(" {} ", words.split_whitespace().collect::<Vec<_>>().join(" "));

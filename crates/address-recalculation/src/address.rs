@@ -128,7 +128,8 @@ impl AddressUnit {
         Some(self.around(met.face, [column, row], fractions))
     }
 
-    /// Returns the footprint with the given upper left texel. Some of the footprint's four texels can lie beyond the edges of the face.
+    /// Returns the footprint of four texels with the given upper left texel. Texels of the footprint can lie beyond the
+    /// edges of the face.
     pub(crate) fn around(&self, face: CubeFace, [column, row]: [i64; 2], fractions: [u32; 2]) -> Footprint {
         let places = [[column, row], [column + 1, row], [column, row + 1], [column + 1, row + 1]];
         let size = i64::from(self.geometry.texels);

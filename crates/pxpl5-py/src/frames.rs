@@ -65,7 +65,7 @@ impl Frames {
                     self.checks.check()?;
                     return Err(exception(error));
                 }
-                // Ctrl-C drops the receiver, which ends the run.
+                // Ctrl-C drops the receiver. The run ends when it has the next picture to send.
                 Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| self.progress.stop())?,
                 Err(RecvTimeoutError::Disconnected) => {
                     self.checks.check()?;

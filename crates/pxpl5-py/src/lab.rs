@@ -216,7 +216,8 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and two bisections of 64 steps.
+/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. More values
+/// move the end of the progress bar.
 const VALUES: u64 = 12;
 
 /// Whole numbers below this limit are exact as real numbers.

@@ -135,7 +135,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world. The list `occupied` names the cells that contain parts of the scene.
+    /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
     ///
     /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
     /// this.
