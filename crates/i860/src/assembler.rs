@@ -17,6 +17,7 @@
 //! After all addresses are known, the assembler checks every instruction. The module `check` lists the rules.
 
 mod check;
+mod conditions;
 mod error;
 mod expression;
 mod listing;
@@ -24,6 +25,7 @@ mod operand;
 mod source;
 
 pub use check::Rule;
+pub(crate) use conditions::select;
 pub use error::{AssemblyError, AssemblyErrors, AssemblyWarning};
 
 use crate::encode::encode;
@@ -213,8 +215,10 @@ struct Assembler<'a> {
 /// assert_eq!(program.symbol("loop"), Some(0x1000));
 /// ```
 pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, AssemblyErrors> {
-    // First pass: expand macros, define labels and reserve memory.
-    let lines = source::expand(file, source).map_err(|e| AssemblyErrors(vec![e]))?;
+    // First pass: select lines by conditions, expand macros, define labels and reserve memory.
+    let wrong = |(line, reason)| AssemblyErrors(vec![AssemblyError { file: file.to_owned(), line, reason }]);
+    let source = select(source).map_err(wrong)?;
+    let lines = source::expand(file, &source).map_err(|e| AssemblyErrors(vec![e]))?;
     let mut assembler = Assembler {
         file,
         base,

@@ -58,6 +58,7 @@ mod parse;
 mod place;
 mod settings;
 
+use crate::assembler::select;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
@@ -106,7 +107,8 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     Ok(found)
 }
 
-/// Replaces every stretch of linear code in a source by instruction pairs. Other lines stay unchanged.
+/// Replaces every stretch of linear code in a source by instruction pairs. Lines that a condition (`.if`) excludes
+/// become empty. Other lines stay unchanged.
 ///
 /// # Errors
 /// Returns [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
@@ -133,6 +135,7 @@ fn stretches(
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
     mut other: impl FnMut(&str),
 ) -> Result<(), LinearError> {
+    let source = select(source).map_err(|(line, reason)| LinearError { line, reason })?;
     let mut pool = Vec::new();
     let mut lines = source.lines().enumerate().map(|(n, text)| (n + 1, text));
     while let Some((line, text)) = lines.next() {

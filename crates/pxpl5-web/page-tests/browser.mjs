@@ -123,6 +123,7 @@ export async function drag() {
 export async function recordedAgain() {
   const link = await run("return document.getElementById('link').hash");
   assert.match(link, /motion=/);
+  await until("the recorded file", "document.querySelector('#needs a') !== null");
   const recording = await run("return fetch(document.querySelector('#needs a').href).then((file) => file.text())");
   const folder = resolve(pictures);
   writeFileSync(join(folder, "recorded.csv"), recording);

@@ -15,8 +15,8 @@ export function spinningScreen({ volumeWorker, refused }) {
       at("volume-says").textContent = `${slices} slices drawn in ${((performance.now() - begun) / 1000).toFixed(1)} s`;
       Object.assign(at("slice"), { max: slices - 1, value: Math.round(slices / 4) });
       Object.assign(at("slice-picture"), { width, height });
-      at("volume").hidden = false;
       await Promise.all([slice(), round()]);
+      at("volume").hidden = false;
     } catch (error) {
       at("volume-says").textContent = "";
       await refused(error);

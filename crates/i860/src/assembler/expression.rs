@@ -1,5 +1,5 @@
-//! Constant expressions: numbers, symbols, the operators `+ - * / % << >> & | ^ ~ ( )`, and the halves `h%`, `l%`,
-//! `ha%` of a constant.
+//! Constant expressions: numbers, symbols, the operators `+ - * / % << >> == != & | ^ ~ ! ( )`, and the halves `h%`,
+//! `l%`, `ha%` of a constant.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
 }
 
 /// Binary operators by precedence, the weakest level first. The strongest level is [`PRODUCTS`].
-const LEVELS: [&[&str]; 5] = [&["|"], &["^"], &["&"], &["<<", ">>"], &["+", "-"]];
+const LEVELS: [&[&str]; 6] = [&["|"], &["^"], &["&"], &["==", "!="], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 
 fn apply(operator: &str, a: i64, b: i64) -> Result<i64, String> {
@@ -37,6 +37,8 @@ fn apply(operator: &str, a: i64, b: i64) -> Result<i64, String> {
         "|" => a | b,
         "^" => a ^ b,
         "&" => a & b,
+        "==" => i64::from(a == b),
+        "!=" => i64::from(a != b),
         "<<" => a << shift(b)?,
         ">>" => a >> shift(b)?,
         "+" => a.wrapping_add(b),
@@ -98,6 +100,7 @@ impl Parser<'_> {
             () if self.take("-") => Ok(self.unary()?.wrapping_neg()),
             () if self.take("+") => self.unary(),
             () if self.take("~") => Ok(!self.unary()?),
+            () if self.take("!") => Ok(i64::from(self.unary()? == 0)),
             // `ha%` is rounded, because the low half that is added later is signed.
             () if self.take("ha%") => self.unary().map(|v| v.wrapping_add(0x8000) >> 16 & 0xFFFF),
             () if self.take("h%") => self.unary().map(|v| v >> 16 & 0xFFFF),
@@ -143,6 +146,8 @@ mod tests {
         let none = Symbols::new();
         assert_eq!(evaluate("1 + 2 * 3 << 1 | 1", &none), Ok(15));
         assert_eq!(evaluate("-(4 - 6) * 0x10 & ~0", &none), Ok(32));
+        assert_eq!(evaluate("1 + 1 == 2 & 3 != 4", &none), Ok(1));
+        assert_eq!(evaluate("!0 & !7 | 2 == 1", &none), Ok(0));
     }
 
     #[test]
