@@ -592,7 +592,7 @@ Other code follows the same rules:
 | frames in regions of 128 x 128 for faces of a cube and other displays | kernels/grid.s |
 | selection of the faces that a primitive may touch | crates/pphigs/kernels/sort.s, sort_rules.md |
 | window search for a strip of lines or a block | windows.s, windows_rules.md |
-| triangles between the views of a field's begin and end | between.s, between_rules.md |
+| triangles between the views of a field's begin and end | compiled.s, between_rules.md |
 
 The operating software of the original machine is not published. The file ring_rules.md describes what the code in
 ring.s stands for. The kernels of the tables below have the size of an NTSC frame or field as constants. The kernels for

@@ -309,8 +309,11 @@ fn conditions_select_lines_by_constants_above() {
              SIZE = 128
              .if STRIPS
              adds 3, r0, r4
+             .elseif SIZE == 128
+             adds 4, r0, r4
+             .elseif UNKNOWN
              .else
-             adds 4, r0, r4 // SIZE is known here
+             adds 5, r0, r4
              .endif
              .else
              SIZE = 120
@@ -321,13 +324,13 @@ fn conditions_select_lines_by_constants_above() {
         )
     };
     let text = |phong, strips| -> Vec<String> {
-        let program = assemble("t.s", 0, &source(phong, strips).replace("; ", "\n")).expect("correct");
+        let program = assemble("t.s", 0, &source(phong, strips)).expect("correct");
         program.words().iter().map(|word| disassemble(*word, 0)).collect()
     };
     assert_eq!(text(1, 1), ["adds 3, r0, r4", "adds 128, r0, r5"]);
     assert_eq!(text(1, 0), ["adds 4, r0, r4", "adds 128, r0, r5"]);
     // The condition inside excluded lines is not evaluated in the other cases.
-    assert_fault(&source(0, 0).replace("; ", "\n"), 12, ".if: `UNKNOWN` is not defined");
+    assert_fault(&source(0, 0), 14, ".if: `UNKNOWN` is not defined");
 }
 
 #[test]
@@ -335,6 +338,7 @@ fn wrong_conditions_are_named_with_their_line() {
     assert_fault("nop\n.if 1\nnop", 2, ".if without .endif");
     assert_fault("nop\n.endif", 2, ".endif without .if");
     assert_fault(".if 1\n.else\n.else\n.endif", 3, ".else without .if");
+    assert_fault(".if 1\n.else\n.elseif 1\n.endif", 3, ".elseif without .if");
     assert_fault(".if label\nlabel: nop\n.endif", 1, "`label` is not defined");
     // The line numbers of other errors stay the same.
     assert_fault(".if 0\nwrong\n.endif\nwrong", 4, "`wrong` is not an operation");

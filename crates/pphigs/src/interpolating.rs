@@ -1,8 +1,8 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
 //! The code records each triangle's positions in the two views at the start and at the end of a field. It then makes
-//! the commands of a strip, a group of consecutive lines, for a view in between. The code is `ends.s`, `blend.s` and
-//! `between.s` of `pxpl5-geometry`. This project made the rules for the code (kernels/between_rules.md).
+//! the commands of a strip, a group of consecutive lines, for a view in between. The code is `ends.s` and
+//! `compiled.s` of `pxpl5-geometry`. This project made the rules for the code (kernels/between_rules.md).
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};

@@ -1,14 +1,22 @@
-// ---- the same batch for the right eye: its corners to the places and depths of the records, whose colours stay
-        .pool   r1 r7 r8 r9 r10 r11 r12 r13 r14 r15 r22 r23 r26 r27 r28
+// Dual-instruction code: the end of the right eye's loop over corners.
 
-righteye: shl   5, r31, r7
-        shl     6, r31, r8
-        subs    r16, r7, r16
-        subs    r16, r8, r16
-        turns
-        mov     r16, r29
-        adds    RECORDS, r2, r6
-        .align  8
+        d.fnop
+            adds    TRIANGLE_BYTES, r29, r29
+        d.fnop
+            adds    -1, r30, r30
+        d.fnop
+            adds    RECORD_STEP, r6, r6
+        d.fnop
+            btne    r0, r30, rightcorners
+        d.fnop
+            adds    RECORDS, r2, r3
         d.fnop
             nop
-rightcorners:
+        d.fnop
+            br      again
+        d.fnop
+            nop
+        fnop                                // never reached: what follows is single
+            nop
+        fnop
+            nop

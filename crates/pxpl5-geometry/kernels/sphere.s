@@ -1,3 +1,424 @@
+.if BOXES
+// There are no bins of spheres: the box of each command goes to r19, in pixels of the picture.
+
+        .macro  boxed
+        st.l    r11, 0(r19)
+        st.l    r12, 4(r19)
+        st.l    r13, 8(r19)
+        st.l    r14, 12(r19)
+        adds    16, r19, r19
+        .endm
+
+        .macro  binned
+        .endm
+.else
+// Spheres go into the bins of the regions that their boxes meet.
+
+        .macro  boxed
+        .endm
+
+// columns r11 to r12 and rows r13 to r14 of regions
+        .macro  binned
+        mov     r0, r22
+        mov     r13, r15
+rows:   mov     r11, r23
+columns: regionnumber r15, r23
+        insert  r28
+        adds    1, r23, r23
+        subs    r12, r23, r0
+        bnc     columns
+        adds    1, r15, r15
+        subs    r14, r15, r0
+        bnc     rows
+        .endm
+.endif
+
+.if PHONG
+// A command: enable; silhouette, root, depth; normal x and y; its z from the root; the object's colour.
+COMMAND_BYTES = 152
+
+        .macro  surface
+        fld.d   PEAK_VALUE(r2), f16         // the root at the middle, a quarter of which is z
+        call    root
+        nop
+        fmul.dd f16, f18, f18
+        mov     1023, r8
+        subs    r8, r25, r8
+        shl     20, r8, r8
+        ixfr    r0, f8
+        ixfr    r8, f9
+        fmul.dd f18, f8, f18                // 2^-depth_shift
+        fld.d   S_QUARTER(r20), f8
+        fld.d   S_UNIT(r20), f10
+        fmul.dd f18, f8, f18
+        fmul.dd f18, f10, f18
+        fst.d   f18, UP(r2)
+        fld.d   PER(r2), f8
+        fld.d   S_HALF_UNIT(r20), f16
+        fmul.dd f18, f8, f18
+        fmov.dd f0, f20
+        fld.d   PEAK(r2), f22
+        fld.d   PEAK+8(r2), f24
+        call    plane
+        adds    108, r18, r11
+        fld.d   UP(r2), f18
+        fld.d   PER+8(r2), f8
+        fsub.dd f0, f18, f18
+        fld.d   S_HALF_UNIT(r20), f16
+        fmul.dd f18, f8, f20
+        fmov.dd f0, f18
+        call    plane
+        adds    124, r18, r11
+        restated 108
+        restated 124
+        heads   26, 30
+        heads   34, 35
+        ld.l    S_WORDS+144(r20), r8
+        ld.l    COLOUR(r16), r9
+        st.l    r8, 144(r18)
+        st.l    r9, 148(r18)
+        .endm
+.else
+// A command: enable; silhouette, root, depth; of three components a product with the root, a linear part, a limit.
+COMMAND_BYTES = 212
+
+// the vector f24 f26 f28 the other way round
+        .macro  turnedround
+        fsub.dd f0, f24, f24
+        fsub.dd f0, f26, f26
+        fsub.dd f0, f28, f28
+        .endm
+
+// the same with length 1
+        .macro  unit
+        fmul.dd f24, f24, f16
+        fmul.dd f26, f26, f8
+        fadd.dd f16, f8, f16
+        fmul.dd f28, f28, f8
+        call    root
+        fadd.dd f16, f8, f16
+        fmul.dd f24, f18, f24
+        fmul.dd f26, f18, f26
+        fmul.dd f28, f18, f28
+        .endm
+
+// of the vector that is 1 along axis k, what is at a right angle to where the eye lies, unit: its part along the light
+        .macro  across k, to
+        fld.d   TOWARDS(r2), f24
+        fld.d   TOWARDS+8(r2), f26
+        fld.d   TOWARDS+16(r2), f28
+        fld.d   TOWARDS+8*\k(r2), f30
+        fmul.dd f30, f24, f24
+        fmul.dd f30, f26, f26
+        fmul.dd f30, f28, f28
+        turnedround
+        fld.d   S_ONE(r20), f8
+        oneof\k
+        unit
+        lit     f24, f26, f28
+        fst.d   f24, \to(r2)
+        .endm
+        .macro  oneof0
+        fadd.dd f24, f8, f24
+        .endm
+        .macro  oneof1
+        fadd.dd f26, f8, f26
+        .endm
+
+// a = the vector a, b, c times the light
+        .macro  lit a, b, c
+        fld.d   S_LIGHT(r20), f8
+        fld.d   S_LIGHT+8(r20), f10
+        fmul.dd \a, f8, \a
+        fmul.dd \b, f10, \b
+        fadd.dd \a, \b, \a
+        fld.d   S_LIGHT+16(r20), f8
+        fmul.dd \c, f8, \c
+        fadd.dd \a, \c, \a
+        .endm
+
+        .macro  surface
+        // towards the eye
+        ld.l    S_PARALLEL(r20), r8
+        fmov.dd f0, f24
+        fmov.dd f0, f26
+        fld.d   S_ONE(r20), f28
+        btne    r0, r8, ahead
+        fld.d   CENTRE(r2), f24
+        fld.d   CENTRE+8(r2), f26
+        fld.d   CENTRE+16(r2), f28
+        turnedround
+        unit
+ahead:  fst.d   f24, TOWARDS(r2)
+        fst.d   f26, TOWARDS+8(r2)
+        fst.d   f28, TOWARDS+16(r2)
+        across  0, ACROSS
+        across  1, UP
+        fld.d   TOWARDS(r2), f24
+        fld.d   TOWARDS+8(r2), f26
+        fld.d   TOWARDS+16(r2), f28
+        lit     f24, f26, f28
+        fst.d   f24, TOWARDS(r2)
+        // one over the greatest value of the root's upper bits
+        fld.d   PEAK_VALUE(r2), f16
+        call    root
+        nop
+        adds    1027, r25, r8
+        shl     20, r8, r8
+        ixfr    r0, f8
+        ixfr    r8, f9
+        fmul.dd f18, f8, f18                // 16 times 2^depth_shift
+        fst.d   f18, PER_ROOT(r2)
+        orh     0x4330, r0, r30
+        adds    112, r18, r10
+        adds    COLOUR+2, r16, r9           // red
+        mov     3, r4
+component: ld.b 0(r9), r8
+        fld.d   S_TWO52(r20), f10
+        and     255, r8, r8
+        ixfr    r8, f28
+        ixfr    r30, f29
+        fsub.dd f28, f10, f28               // the component
+        fld.d   S_DIFFUSE(r20), f30
+        fmul.dd f28, f30, f12               // what the root contributes
+        fld.d   TOWARDS(r2), f8
+        fmul.dd f12, f8, f12
+        fld.d   S_256(r20), f8
+        fmul.dd f12, f8, f12
+        fld.d   PER_ROOT(r2), f8
+        fmul.dd f12, f8, f12
+        fld.d   S_511(r20), f14
+        pfgt.dd f12, f0, f0
+        bc      lighter
+        fmov.dd f0, f12
+lighter: pfgt.dd f14, f12, f0
+        bc      darker
+        fmov.dd f14, f12
+darker: fld.d   S_ROUND(r20), f10
+        fld.d   S_UNIT(r20), f26
+        fadd.dd f12, f10, f12
+        fmul.dd f28, f26, f28
+        fxfr    f12, r8
+        fld.d   S_AMBIENT(r20), f8
+        fmul.dd f28, f8, f16
+        fld.d   S_HALF_UNIT(r20), f10
+        fmul.dd f28, f30, f28
+        st.l    r8, 0(r10)
+        fadd.dd f16, f10, f16
+        fld.d   ACROSS(r2), f8
+        fmul.dd f28, f8, f18
+        fld.d   PER(r2), f10
+        fmul.dd f18, f10, f18
+        fld.d   UP(r2), f8
+        fmul.dd f28, f8, f20
+        fld.d   PER+8(r2), f10
+        fsub.dd f0, f20, f20
+        fmul.dd f20, f10, f20
+        fld.d   PEAK(r2), f22
+        fld.d   PEAK+8(r2), f24
+        call    plane
+        adds    8, r10, r11
+        adds    -1, r9, r9
+        adds    -1, r4, r4
+        adds    36, r10, r10
+        btne    r0, r4, component
+        restated 120
+        restated 156
+        restated 192
+        heads   26, 27
+        heads   29, 33
+        heads   34, 35
+        heads   36, 38
+        heads   42, 43
+        heads   44, 45
+        heads   47, 51
+        ld.l    S_WORDS+208(r20), r8
+        nop
+        st.l    r8, 208(r18)
+        .endm
+.endif
+
+// What the code of spheres is written with: tests, ranges of pixels, whole numbers of 64 bits. Registers and frame stand in sphere.s.
+
+// to `drop` unless |v| <= f12
+        .macro  limited v
+        pfle.dd \v, f12, f0
+        bc      drop
+        fsub.dd f0, \v, f14
+        pfle.dd f14, f12, f0
+        bc      drop
+        .endm
+
+// to `drop` if the number with this high word is none, or infinite
+        .macro  finite high
+        fxfr    \high, r8
+        andh    0x7FF0, r8, r8
+        xorh    0x7FF0, r8, r8
+        bc      drop
+        .endm
+
+// eye coordinate k of the point in f16 f17 f18
+        .macro  eye k, to
+        fld.l   S_ROWS+16*\k(r20), f8
+        fld.l   S_ROWS+16*\k+4(r20), f9
+        fmul.ss f8, f16, \to
+        fld.l   S_ROWS+16*\k+8(r20), f10
+        fmul.ss f9, f17, f12
+        fld.l   S_ROWS+16*\k+12(r20), f11
+        fadd.ss \to, f12, \to
+        fmul.ss f10, f18, f12
+        fadd.ss \to, f12, \to
+        fadd.ss \to, f11, \to
+        .endm
+
+// pixel coordinate k of an eye coordinate
+        .macro  pixel k, from
+        fld.d   S_CORNER+8*\k(r20), f8
+        fld.d   S_RATE+8*\k(r20), f10
+        fsub.dd \from, f8, f8
+        fmul.dd f8, f10, f8
+        fst.d   f8, ORIGIN+8*\k(r2)
+        .endm
+
+// a coefficient in f8 times the square of the bulge
+        .macro  scaled to
+        fmul.dd f8, f18, f8
+        fst.d   f8, \to(r2)
+        .endm
+
+// first and last pixel of the ellipse along axis k
+        .macro  extent k, first, last
+        fld.d   SQUARES+8*\k(r2), f16
+        call    root
+        nop
+        fst.d   f18, PER+8*\k(r2)
+        fmul.dd f16, f18, f18
+        fld.d   PEAK+8*\k(r2), f10
+        fsub.dd f10, f18, f12
+        fadd.dd f10, f18, f14
+        finite  f13
+        finite  f15
+        fld.d   S_SLACK(r20), f16
+        fld.d   S_MOST_PIXEL(r20), f18
+        fsub.dd f12, f16, f12
+        fadd.dd f14, f16, f14
+        fsub.dd f0, f18, f20
+        within  f12
+        within  f14
+        fld.d   S_ROUND(r20), f16
+        fadd.dd f12, f16, f18               // up
+        fxfr    f18, \first
+        fsub.dd f18, f16, f18
+        pfgt.dd f12, f18, f0
+        bnc     up\@
+        adds    1, \first, \first
+up\@:   fadd.dd f14, f16, f18               // down
+        fxfr    f18, \last
+        fsub.dd f18, f16, f18
+        pfgt.dd f18, f14, f0
+        bnc     down\@
+        adds    -1, \last, \last
+down\@:
+        .endm
+
+// v between f20 and f18
+        .macro  within v
+        pfgt.dd \v, f20, f0
+        bc      low\@
+        fmov.dd f20, \v
+low\@:  pfgt.dd f18, \v, f0
+        bc      high\@
+        fmov.dd f18, \v
+high\@:
+        .endm
+
+// r from 0 to `most`
+        .macro  clamped r, most
+        subs    r0, \r, r0
+        bc      low\@                       // r > 0
+        mov     r0, \r
+low\@:  subs    \most, \r, r0
+        bnc     high\@
+        mov     \most, \r
+high\@:
+        .endm
+
+// a range from 0, its end brought to the picture by `atmost`; to `drop` if nothing is left
+        .macro  clipped first, last, atmost
+        subs    r0, \first, r0
+        bc      above\@                     // first > 0
+        mov     r0, \first
+above\@: \atmost \last
+        subs    \last, \first, r0
+        bc      drop
+        .endm
+
+// an integer of at least 0 as a double: r30 is the high word of 2^52, f10 that number
+        .macro  double r, to
+        ixfr    \r, f8
+        ixfr    r30, f9
+        fsub.dd f8, f10, f8
+        fst.d   f8, \to(r2)
+        .endm
+
+// the pixel nearest to the peak along axis k
+        .macro  nearest k, first, last, word
+        fld.d   \first(r2), f20
+        fld.d   \last(r2), f18
+        fld.d   PEAK+8*\k(r2), f12
+        within  f12
+        fadd.dd f12, f16, f12
+        fxfr    f12, r8
+        fsub.dd f12, f16, f12
+        st.l    r8, \word(r2)
+        st.l    r0, \word+4(r2)
+        fst.d   f12, PIXEL+8*\k(r2)
+        .endm
+
+// the greatest |value| so far, f30, and that at a corner
+        .macro  greater x, y
+        fld.d   \x(r2), f8
+        fld.d   ORIGIN(r2), f12
+        fld.d   \y(r2), f10
+        fsub.dd f8, f12, f8
+        fld.d   ORIGIN+8(r2), f12
+        call    value
+        fsub.dd f10, f12, f10
+        fsub.dd f0, f12, f14
+        pfgt.dd f12, f30, f0
+        bnc     less\@
+        fmov.dd f12, f30
+less\@: pfgt.dd f14, f30, f0
+        bnc     lesser\@
+        fmov.dd f14, f30
+lesser\@:
+        .endm
+
+// the whole number of 64 bits nearest to a times f28; 1.5 * 2^52 in f30
+        .macro  whole a
+        fmul.dd \a, f28, \a
+        fadd.dd \a, f30, \a
+        fisub.dd \a, f30, \a
+        .endm
+
+// to = the number of 64 bits in low and high, times the small one p; f9, f11 and f14 are 0
+        .macro  times low, high, p, to
+        fmov.ss \low, f8
+        fmov.ss \high, f10
+        fmlow.dd f8, \p, \to
+        fmlow.dd f10, \p, f12
+        fmov.ss f12, f15
+        fiadd.dd \to, f14, \to
+        .endm
+
+// words m and n of the command
+        .macro  heads m, n
+        ld.l    S_WORDS+4*\m(r20), r8
+        ld.l    S_WORDS+4*\n(r20), r9
+        st.l    r8, 4*\m(r18)
+        st.l    r9, 4*\n(r18)
+        .endm
+
 // Spheres from the display list to the words of a command and to bins, as a good compiler of about 1990 would give a plain program in C
 // (compiled_rules.md). The arithmetic and its order are those of the native transform and set-up.
 //
@@ -448,3 +869,73 @@ drop:   adds    -1, r17, r17
         nop
         bri     r1
         nop
+
+// What the code of spheres calls.
+
+// ---- f18 = 1 / the root of f16. Changes f8, f20, f22.
+root:   fld.d   S_HALF(r20), f20
+        fld.d   S_THREE_HALVES(r20), f22
+        nop
+        reciprocal_root
+        bri     r1
+        nop
+
+// ---- f12 = the conic, whose coefficients are in f16 to f26, at f8, f10 from its origin. Changes f14.
+value:  fmul.dd f16, f8, f12
+        fmul.dd f18, f10, f14
+        fadd.dd f12, f14, f12
+        fadd.dd f12, f22, f12
+        fmul.dd f12, f8, f12
+        fmul.dd f20, f10, f14
+        fadd.dd f14, f24, f14
+        fmul.dd f14, f10, f14
+        fadd.dd f12, f14, f12
+        bri     r1
+        fadd.dd f12, f26, f12
+
+// ---- plane of value f16 and slopes f18, f20 at the pixel f22, f24 to the words at r11. Keeps r4, r9, r10, f22 to f26, f30.
+plane:  fld.d   S_LIMIT(r20), f28
+        fsub.dd f0, f18, f8
+        pfgt.dd f28, f18, f0
+        bnc     level
+        pfgt.dd f28, f8, f0
+        bnc     level
+        fsub.dd f0, f20, f8
+        pfgt.dd f28, f20, f0
+        bnc     level
+        pfgt.dd f28, f8, f0
+        bnc     level
+        fld.d   PIXEL(r2), f8
+        fsub.dd f8, f22, f8
+        fld.d   PIXEL+8(r2), f10
+        fsub.dd f10, f24, f10
+        fmul.dd f18, f8, f8
+        fld.d   S_ROUND(r20), f12
+        fadd.dd f16, f8, f16
+        fmul.dd f20, f10, f10
+        fadd.dd f16, f10, f16
+        fadd.dd f18, f12, f18
+        fld.d   PIXEL_X(r2), f8
+        fadd.dd f20, f12, f20
+        fld.d   PIXEL_Y(r2), f10
+        fadd.dd f16, f12, f16
+        fxfr    f18, r6
+        fmlow.dd f18, f8, f8
+        fxfr    f20, r7
+        st.l    r6, 0(r11)
+        fmlow.dd f20, f10, f10
+        st.l    r7, 4(r11)
+        fxfr    f8, r6
+        fxfr    f10, r7
+        fxfr    f16, r8
+        adds    r6, r7, r6
+        subs    r8, r6, r8
+        bri     r1
+        st.l    r8, 8(r11)
+level:  fld.d   S_ROUND(r20), f12
+        st.l    r0, 0(r11)
+        fadd.dd f16, f12, f16
+        st.l    r0, 4(r11)
+        fxfr    f16, r8
+        bri     r1
+        st.l    r8, 8(r11)

@@ -1,3 +1,15 @@
+// Dual-instruction code: the places of three corners.
+
+// Settings with which the scheduler found the shortest code: window, eagerness, reserve, slope and shake.
+.if GOURAUD & STRIPS
+        .linear 300 30 2 3 0
+.elseif GOURAUD
+        .linear 300 20 2 3 0
+.elseif PHONG & STRIPS
+        .linear 100 30 1 8 0
+.else
+        .linear 100 30 1 5 0
+.endif
         for c 0 1 2
 o$c      = fld.l P_ORIGIN+4*$c(r20)
         endfor
@@ -134,4 +146,75 @@ cye$i    = add.ss cyd$i, cyc$i
         endfor
         for i 0 1 2
 yy$i     = add.ss cye$i, cy3
+        endfor
+.if !PRECOMPUTED
+        for i 0 1 2
+nx$i     = fld.l 32*$i+NORMAL(r29)
+ga$i    = mul.ss x$i, nx$i
+        endfor
+        for i 0 1 2
+ny$i     = fld.l 32*$i+NORMAL+4(r29)
+gb$i    = mul.ss y$i, ny$i
+        endfor
+        for i 0 1 2
+nz$i     = fld.l 32*$i+NORMAL+8(r29)
+gc$i    = mul.ss z$i, nz$i
+gd$i    = add.ss ga$i, gb$i
+        endfor
+        for i 0 1 2
+ge$i    = add.ss gd$i, gc$i
+        endfor
+.endif
+        for i 0 1 2
+@iw$i   iw$i    = ld.l SCRATCH+16*$i(r2) !w$i
+iz$i    = ld.l SCRATCH+16*$i+4(r2) !z$i
+@e$i    id$i    = ld.l SCRATCH+16*$i+8(r2) !d$i
+fa$i    = subs iw$i, least
+fb$i    = subs most, iw$i
+fc$i    = subs id$i, iw$i
+fd$i    = adds fc$i, nearly
+fe$i    = or fa$i, fb$i
+ff$i    = or iz$i, id$i
+fg$i    = or fe$i, ff$i
+fh$i    = or fg$i, fd$i
+@fh$i   st.l fh$i, SCRATCH+16*$i(r2) !iw$i
+        endfor
+scalex  = fld.l P_SCREEN(r20)
+middlex = fld.l P_SCREEN+8(r20)
+round   = fld.l P_ROUND_S(r20)
+turn    = fld.l P_TURN(r20)
+        for i 0 1 2
+xf$i    = mul.ss xx$i, v$i
+        endfor
+        for i 0 1 2
+xg$i    = mul.ss xf$i, scalex
+        endfor
+        for i 0 1 2
+xi$i    = add.ss xg$i, middlex
+xj$i    = sub.ss turn, xi$i
+@xi$i   fst.l xi$i, RECORD*$i+R_SNAPPED(r6)
+@xj$i   fst.l xj$i, RECORD*$i+R_TURNED(r6)
+        endfor
+scaley  = fld.l P_SCREEN+4(r20)
+middley = fld.l P_SCREEN+12(r20)
+        for i 0 1 2
+yf$i    = mul.ss yy$i, v$i
+        endfor
+        for i 0 1 2
+yg$i    = mul.ss yf$i, scaley
+        endfor
+        for i 0 1 2
+yi$i    = add.ss yg$i, middley
+yj$i    = sub.ss turn, yi$i
+@yi$i   fst.l yi$i, RECORD*$i+R_SNAPPED+4(r6)
+@yj$i   fst.l yj$i, RECORD*$i+R_TURNED+4(r6)
+        endfor
+range   = fld.l P_DEPTH_SCALE(r20)
+biased  = fld.d P_DEPTH_BIAS(r20)
+        for i 0 1 2
+zr$i    = fld.l SCRATCH+16*$i+4(r2) !z$i
+zf$i    = mul.ss v$i, range
+zg$i    = mul.sd zr$i, zf$i
+zh$i    = add.dd zg$i, biased
+        fst.d zh$i, RECORD*$i+R_DEPTH(r6)
         endfor

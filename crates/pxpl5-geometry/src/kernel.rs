@@ -18,17 +18,11 @@
 //! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
 //! computed from a first approximation by two Newton steps, in single precision. A matrix turns the normals, and they
 //! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
-//! registers and memory layouts. Each choice of [`Kernel`] concatenates its own source files, like a linker. This crate
-//! neither assembles nor runs the sources.
+//! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
+//! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
+//! sources.
 
 mod between;
-
-/// Source of the clipper's interpolation, for triangles whose surface values depend on normals.
-macro_rules! clip_with_normals {
-    ($surface:literal) => {
-        concat!(include_str!("../kernels/clip_away.s"), "\n", include_str!(concat!("../kernels/clip_", $surface, ".s")))
-    };
-}
 
 pub use between::{ENDS_VIEW_WORDS, ENDS_WORDS};
 
@@ -139,6 +133,38 @@ const TWO_18: f32 = 262_144.0;
 /// Minuend that reverses the order of biased integers: the larger integer gives the smaller difference.
 const FLIP: Word = 0x9700_0000;
 
+const PARAMETERS: &str = include_str!("../kernels/parameters.s");
+pub(crate) const PICTURE: &str = include_str!("../kernels/picture.s");
+pub(crate) const NEWTON: &str = include_str!("../kernels/newton.s");
+const SCALAR: &str = include_str!("../kernels/scalar.s");
+const SCALAR_FUNCTIONS: &str = include_str!("../kernels/scalar_functions.s");
+const BINS: &str = include_str!("../kernels/bins.s");
+const VERTICES: &str = include_str!("../kernels/vertices.s");
+const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
+
+/// Files of compiled code. The functions for the surface come first.
+const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
+
+/// Files of dual-instruction code.
+const DUAL: [&str; 7] = [
+    include_str!("../kernels/dual.s"),
+    VERTICES,
+    include_str!("../kernels/vertices_surface.s"),
+    VERTICES_END,
+    include_str!("../kernels/setup.s"),
+    BINS,
+    include_str!("../kernels/dual_end.s"),
+];
+
+/// Files of the second pass of each batch through the first loop, for kernels that serve both eyes. The colours of the
+/// first pass stay.
+const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
+
+/// Returns a source that defines constants, each 1 if its condition is true and 0 otherwise.
+pub(crate) fn choices(each: &[(&str, bool)]) -> String {
+    each.iter().map(|(name, holds)| format!("{name} = {}\n", u8::from(*holds))).collect()
+}
+
 impl Kernel {
     /// Returns the kernel for a picture of triangles with separate corners.
     ///
@@ -166,28 +192,16 @@ impl Kernel {
     /// For [`Schedule::Dual`], the assembler of this project must first schedule the linear parts of the source.
     #[must_use]
     pub fn source(&self) -> String {
-        let bins = self.bins();
-        let list = match self.list {
-            KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
-            KernelList::Strips => include_str!("../kernels/list_strips.s"),
-        };
-        let insert = include_str!("../kernels/insert.s");
-        let common = [include_str!("../kernels/parameters.s"), list, self.picture.source(), self.cull(), insert];
-        let bins_of_frames = match self.picture {
-            KernelPicture::Frame if self.binned => include_str!("../kernels/bins_scheduled.s"),
-            KernelPicture::Grid => include_str!("../kernels/bins_grid.s"),
-            _ => bins,
-        };
-        let triangle = match self.schedule {
-            Schedule::Straight => [self.straight(), vec![bins]].concat(),
-            Schedule::Compiled => [self.compiled(self.compiled_loop()), vec![bins]].concat(),
+        let choices = self.choices(false);
+        let common = [&choices, PARAMETERS, include_str!("../kernels/list.s"), PICTURE];
+        let own: &[&str] = match self.schedule {
+            Schedule::Straight => &[NEWTON, include_str!("../kernels/straight.s"), BINS],
+            Schedule::Compiled => &COMPILED,
             // Rarely used code comes last. So the bins use other cache sets than the end of the second loop.
-            Schedule::Dual => {
-                let last = [bins_of_frames, include_str!("../kernels/scheduled_doubt.s")];
-                [self.dual(), last.to_vec(), self.right_eye()].concat()
-            }
+            Schedule::Dual if self.both_eyes => &[DUAL.as_slice(), &RIGHT_EYE].concat(),
+            Schedule::Dual => &DUAL,
         };
-        [common.as_slice(), &triangle].concat().join("\n")
+        [&common, own].concat().join("\n")
     }
 
     /// Returns the source of the kernel's clipper. Execution begins at the label `clipper`.
@@ -196,279 +210,29 @@ impl Kernel {
     /// optimization levels.
     #[must_use]
     pub fn clipper_source(&self) -> String {
-        // The last step and the interpolation depend on the surface; the rest of the clipper is common to all surfaces.
-        let (finish, extras) = match self.surface {
-            KernelSurface::Gouraud => (include_str!("../kernels/finish_gouraud.s"), clip_with_normals!("gouraud")),
-            KernelSurface::Precomputed => {
-                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/clip_precomputed.s"))
-            }
-            KernelSurface::Phong => (include_str!("../kernels/finish_phong.s"), clip_with_normals!("phong")),
-        };
-        [
-            include_str!("../kernels/parameters.s"),
-            self.picture.source(),
-            self.cull(),
-            include_str!("../kernels/reciprocal.s"),
-            include_str!("../kernels/setup_scalar.s"),
-            include_str!("../kernels/intensity.s"),
-            finish,
-            include_str!("../kernels/turned_phong.s"),
-            extras,
-            include_str!("../kernels/clipper.s"),
-            include_str!("../kernels/functions_scalar.s"),
-            include_str!("../kernels/insert.s"),
-            self.bins(),
-        ]
-        .join("\n")
+        let choices = Self { schedule: Schedule::Compiled, ..*self }.choices(false);
+        let clipper = include_str!("../kernels/clipper.s");
+        [&choices, PARAMETERS, PICTURE, NEWTON, SCALAR, clipper, SCALAR_FUNCTIONS, BINS].join("\n")
     }
 
-    const fn bins(&self) -> &'static str {
-        match (self.binned, self.keeps_boxes) {
-            (true, _) => include_str!("../kernels/bins.s"),
-            (false, false) => include_str!("../kernels/unbinned.s"),
-            (false, true) => include_str!("../kernels/box_kept.s"),
-        }
-    }
-
-    const fn cull(&self) -> &'static str {
-        if self.culls { include_str!("../kernels/cull.s") } else { include_str!("../kernels/cull_none.s") }
-    }
-
-    fn straight(&self) -> Vec<&'static str> {
-        let surface = match self.surface {
-            KernelSurface::Gouraud => include_str!("../kernels/gouraud.s"),
-            KernelSurface::Precomputed => include_str!("../kernels/precomputed.s"),
-            KernelSurface::Phong => include_str!("../kernels/phong.s"),
-        };
-        vec![
-            include_str!("../kernels/exact.s"),
-            include_str!("../kernels/surface.s"),
-            surface,
-            include_str!("../kernels/reciprocal.s"),
-            include_str!("../kernels/triangle_straight.s"),
-        ]
-    }
-
-    /// Returns the source of the compiled main loop over triangles, in three parts: the addressing of corners, the
-    /// loop, and the code for one corner.
-    const fn compiled_loop(&self) -> [&'static str; 3] {
-        let one = include_str!("../kernels/compiled_one.s");
-        let main = include_str!("../kernels/compiled.s");
-        match self.surface {
-            KernelSurface::Precomputed if self.both_eyes => ["", include_str!("../kernels/compiled_both.s"), ""],
-            KernelSurface::Precomputed => [one, main, include_str!("../kernels/compiled_place.s")],
-            KernelSurface::Gouraud | KernelSurface::Phong => [one, main, include_str!("../kernels/compiled_corner.s")],
-        }
-    }
-
-    fn compiled(&self, main: [&'static str; 3]) -> Vec<&'static str> {
-        // Functions first, then the main loop, then scalar helpers.
-        let (finish, surface) = match self.surface {
-            KernelSurface::Gouraud => {
-                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_gouraud.s"))
-            }
-            KernelSurface::Precomputed => {
-                (include_str!("../kernels/finish_gouraud.s"), include_str!("../kernels/compiled_precomputed.s"))
-            }
-            KernelSurface::Phong => {
-                (include_str!("../kernels/finish_phong.s"), include_str!("../kernels/compiled_phong.s"))
-            }
-        };
-        vec![
-            include_str!("../kernels/reciprocal.s"),
-            include_str!("../kernels/setup_scalar.s"),
-            include_str!("../kernels/intensity.s"),
-            finish,
-            include_str!("../kernels/turned_phong.s"),
-            surface,
-            include_str!("../kernels/compiled_head.s"),
-            main[0],
-            main[1],
-            main[2],
-            include_str!("../kernels/functions_scalar.s"),
-        ]
-    }
-
-    fn dual(&self) -> Vec<&'static str> {
-        let strips = self.list == KernelList::Strips;
-        let (vertices, setup) = self.schedules();
-        // With bins, expressions are converted from the frame's lines to the field's rows after the regions are known.
-        let field = self.picture == KernelPicture::Field;
-        let [edges, reference, planes] = match field && !self.binned {
-            true => [
-                include_str!("../kernels/edges_field.s"),
-                include_str!("../kernels/reference_field.s"),
-                include_str!("../kernels/planes_field.s"),
-            ],
-            false => [
-                include_str!("../kernels/edges_frame.s"),
-                include_str!("../kernels/reference_frame.s"),
-                include_str!("../kernels/planes_frame.s"),
-            ],
-        };
-        // The code for regions and the end of the loop depend on bins and on the picture.
-        let (regions, tail) = match (self.binned, self.picture) {
-            (false, _) if self.keeps_boxes => (
-                concat!(include_str!("../kernels/regions_later.s"), "\n", include_str!("../kernels/regions_kept.s")),
-                include_str!("../kernels/tail_kept.s"),
-            ),
-            (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
-            (true, KernelPicture::Field) => {
-                (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s"))
-            }
-            (true, KernelPicture::Frame) => {
-                (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s"))
-            }
-            (true, KernelPicture::Grid) => {
-                (include_str!("../kernels/regions_grid.s"), include_str!("../kernels/tail_frame.s"))
-            }
-        };
-        let middle = match (self.binned, self.picture) {
-            (true, KernelPicture::Grid) => include_str!("../kernels/middle_grid.s"),
-            (true, _) => include_str!("../kernels/middle_seen.s"),
-            (false, _) => include_str!("../kernels/middle_anywhere.s"),
-        };
-        let (doubt, doubted) = match strips {
-            false => (include_str!("../kernels/doubt_of_triangle.s"), include_str!("../kernels/doubted_triangle.s")),
-            true => (include_str!("../kernels/doubt_of_vertices.s"), include_str!("../kernels/doubted_vertices.s")),
-        };
-        let [command_bytes, before, surface, after, side, words] = self.dual_surface(strips);
-        let away = match self.surface {
-            KernelSurface::Precomputed => "",
-            KernelSurface::Gouraud | KernelSurface::Phong => include_str!("../kernels/away.s"),
-        };
-        vec![
-            command_bytes,
-            match self.both_eyes {
-                false => include_str!("../kernels/scheduled_one.s"),
-                true => include_str!("../kernels/scheduled_both.s"),
-            },
-            include_str!("../kernels/scheduled_head.s"),
-            "corners:",
-            include_str!("../kernels/vertices_head.s"),
-            vertices,
-            include_str!("../kernels/vertices.s"),
-            away,
-            include_str!("../kernels/vertices_placed.s"),
-            before,
-            surface,
-            after,
-            include_str!("../kernels/vertices_end.s"),
-            doubt,
-            include_str!("../kernels/scheduled_again.s"),
-            include_str!("../kernels/setup_head.s"),
-            setup,
-            doubted,
-            include_str!("../kernels/setup.s"),
-            if self.culls { include_str!("../kernels/doubt_culled.s") } else { include_str!("../kernels/doubt.s") },
-            include_str!("../kernels/box.s"),
-            middle,
-            include_str!("../kernels/corners.s"),
-            side,
-            include_str!("../kernels/slopes.s"),
-            include_str!("../kernels/edges.s"),
-            edges,
-            reference,
-            planes,
-            words,
-            regions,
-            "        .endlinear",
-            tail,
-            include_str!("../kernels/scheduled_tail.s"),
-        ]
-    }
-
-    /// Returns the source of a second pass of each batch through the first loop, for kernels that serve both eyes.
-    fn right_eye(&self) -> Vec<&'static str> {
-        if !self.both_eyes {
-            return Vec::new();
-        }
-        vec![
-            include_str!("../kernels/right_eye.s"),
-            self.schedules().0,
-            include_str!("../kernels/vertices.s"),
-            include_str!("../kernels/vertices_placed.s"),
-            include_str!("../kernels/vertices_end.s"),
-            include_str!("../kernels/doubt_of_triangle.s"),
-            include_str!("../kernels/right_again.s"),
-        ]
-    }
-
-    /// Returns the parts of the scheduled code that depend on the surface.
-    ///
-    /// The first part is the size of a command. Then follows code before, in and after the computation of the corners'
-    /// surface values. The last parts are code for the two sides of a triangle, and code for the words of the command.
-    fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
-        // Phong commands have the colour as a further word, so they are longer.
-        match (self.surface, strips) {
-            (KernelSurface::Gouraud, false) => [
-                "COMMAND_BYTES = 120",
-                "",
-                include_str!("../kernels/vertices_gouraud.s"),
-                include_str!("../kernels/side_of_none.s"),
-                include_str!("../kernels/side_found.s"),
-                include_str!("../kernels/command_gouraud.s"),
-            ],
-            (KernelSurface::Precomputed, _) => [
-                "COMMAND_BYTES = 120",
-                "",
-                include_str!("../kernels/vertices_precomputed.s"),
-                "",
-                "side    = or r0, r20",
-                include_str!("../kernels/command_gouraud.s"),
-            ],
-            (KernelSurface::Gouraud, true) => [
-                "COMMAND_BYTES = 120",
-                "",
-                include_str!("../kernels/vertices_gouraud.s"),
-                "",
-                "side    = or r0, r20",
-                include_str!("../kernels/command_gouraud.s"),
-            ],
-            (KernelSurface::Phong, false) => [
-                "COMMAND_BYTES = 128",
-                include_str!("../kernels/side_of_triangle.s"),
-                include_str!("../kernels/normals_phong.s"),
-                include_str!("../kernels/colour_of_triangle.s"),
-                include_str!("../kernels/side_found.s"),
-                include_str!("../kernels/command_phong.s"),
-            ],
-            (KernelSurface::Phong, true) => [
-                "COMMAND_BYTES = 128",
-                "",
-                include_str!("../kernels/normals_phong.s"),
-                include_str!("../kernels/colour_of_vertices.s"),
-                include_str!("../kernels/side_of_vertices.s"),
-                include_str!("../kernels/command_phong.s"),
-            ],
-        }
-    }
-
-    /// Returns the settings with which the scheduler found the shortest code, for the first and the second loop. The
-    /// five numbers are: window, eagerness, reserve, slope and shake.
-    const fn schedules(&self) -> (&'static str, &'static str) {
-        use KernelList::{Strips, Triangles};
-        use KernelSurface::{Gouraud, Phong, Precomputed};
-        // Settings of the first loop, over vertices.
-        let vertices = match (self.list, self.surface) {
-            (_, Precomputed) => ".linear 100 30 1 5 0",
-            (Triangles, Gouraud) => ".linear 300 20 2 3 0",
-            (Strips, Gouraud) => ".linear 300 30 2 3 0",
-            (Triangles, Phong) => ".linear 100 30 1 5 0",
-            (Strips, Phong) => ".linear 100 30 1 8 0",
-        };
-        // Settings of the second loop, over triangles.
-        let setup = match (self.list, self.surface, matches!(self.picture, KernelPicture::Field)) {
-            (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
-            _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
-            (_, Gouraud | Precomputed, false) => ".linear 150 20 2 8 0",
-            (Triangles, Gouraud | Precomputed, true) => ".linear 64 15 2 8 0",
-            (Strips, Gouraud | Precomputed, true) => ".linear 64 20 1 8 0",
-            (Triangles, Phong, false) => ".linear 150 20 1 8 0",
-            (Strips, Phong, false) | (Triangles, Phong, true) => ".linear 300 30 1 8 0",
-            (Strips, Phong, true) => ".linear 150 20 2 8 0",
-        };
-        (vertices, setup)
+    /// Returns the constants that the conditions of the sources use. Each constant is 0 or 1. The constant `BETWEEN` is
+    /// 1 for [triangles between two views](Self::between_source).
+    fn choices(&self, between: bool) -> String {
+        let surface = |surface| self.surface == surface;
+        choices(&[
+            ("GOURAUD", surface(KernelSurface::Gouraud)),
+            ("PRECOMPUTED", surface(KernelSurface::Precomputed)),
+            ("PHONG", surface(KernelSurface::Phong)),
+            ("STRIPS", self.list == KernelList::Strips),
+            ("FIELD", self.picture == KernelPicture::Field),
+            ("GRID", self.picture == KernelPicture::Grid),
+            ("BINNED", self.binned),
+            ("BOXES", self.keeps_boxes),
+            ("CULLED", self.culls),
+            ("BOTH_EYES", self.both_eyes),
+            ("DUAL", self.schedule == Schedule::Dual),
+            ("BETWEEN", between),
+        ])
     }
 
     /// Returns the size of a command in bytes.
@@ -576,14 +340,6 @@ impl KernelPicture {
             }
         }
     }
-
-    pub(crate) const fn source(self) -> &'static str {
-        match self {
-            Self::Frame => concat!(include_str!("../kernels/ntsc.s"), "\n", include_str!("../kernels/frame.s")),
-            Self::Field => concat!(include_str!("../kernels/ntsc.s"), "\n", include_str!("../kernels/field.s")),
-            Self::Grid => include_str!("../kernels/grid.s"),
-        }
-    }
 }
 
 /// Returns the last subpixel of a picture along x, its last subpixel along y in the frame, and its number of regions
@@ -638,13 +394,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
 /// [`crate::sphere_kernel`].
 #[must_use]
 pub fn place_source() -> String {
-    [
-        include_str!("../kernels/parameters.s"),
-        include_str!("../kernels/sphere_parameters.s"),
-        include_str!("../kernels/reciprocal_root.s"),
-        include_str!("../kernels/place.s"),
-    ]
-    .join("\n")
+    let [spheres, place] = [include_str!("../kernels/sphere_parameters.s"), include_str!("../kernels/place.s")];
+    [PARAMETERS, spheres, NEWTON, place].join("\n")
 }
 
 /// Returns a row of the matrix that turns normals, scaled to the units of normals in commands.

@@ -54,28 +54,15 @@ impl SphereKernel {
     /// Returns the source in i860 assembly. Execution begins at the label `spheres`.
     #[must_use]
     pub fn source(&self) -> String {
-        let surface = match self.surface {
-            KernelSurface::Gouraud | KernelSurface::Precomputed => include_str!("../kernels/sphere_gouraud.s"),
-            KernelSurface::Phong => include_str!("../kernels/sphere_phong.s"),
-        };
-        let bins = match self.keeps_boxes {
-            false => include_str!("../kernels/sphere_binned.s"),
-            true => include_str!("../kernels/sphere_kept.s"),
-        };
-        // Shared functions come first, then the macros, the loop and its functions.
-        [
-            include_str!("../kernels/sphere_parameters.s"),
-            self.picture.source(),
-            include_str!("../kernels/reciprocal.s"),
-            include_str!("../kernels/reciprocal_root.s"),
-            include_str!("../kernels/insert.s"),
-            bins,
-            surface,
-            include_str!("../kernels/sphere_macros.s"),
-            include_str!("../kernels/sphere.s"),
-            include_str!("../kernels/sphere_functions.s"),
-        ]
-        .join("\n")
+        let choices = kernel::choices(&[
+            ("PHONG", self.surface == KernelSurface::Phong),
+            ("FIELD", self.picture == KernelPicture::Field),
+            ("GRID", self.picture == KernelPicture::Grid),
+            ("BOXES", self.keeps_boxes),
+            ("CULLED", false),
+        ]);
+        let parameters = include_str!("../kernels/sphere_parameters.s");
+        [&choices, parameters, kernel::PICTURE, kernel::NEWTON, include_str!("../kernels/sphere.s")].join("\n")
     }
 
     /// Returns the number of words of a sphere's command.

@@ -1,4 +1,4 @@
-//! Conditional assembly: `.if`, `.else` and `.endif`.
+//! Conditional assembly: `.if`, `.elseif`, `.else` and `.endif`.
 //!
 //! The conditions are evaluated before macros are expanded and before linear code is scheduled. They use the constants
 //! that the lines above define.
@@ -7,20 +7,25 @@ use super::expression::{Symbols, evaluate};
 use super::source::is_name;
 use std::borrow::Cow;
 
-/// An open `.if`: its line number, and which of its lines are selected.
+/// An open `.if`.
 struct Open {
+    /// Line number of the `.if`.
     line: usize,
-    /// True if the condition was true.
-    taken: bool,
-    /// True after `.else`.
-    in_else: bool,
     /// True if the lines around this `.if` are selected.
     outer: bool,
+    /// True while the current branch is selected.
+    selected: bool,
+    /// True once a branch was selected; later branches are then excluded.
+    done: bool,
+    /// True after `.else`.
+    ended: bool,
 }
 
 impl Open {
-    const fn selects(&self) -> bool {
-        self.outer && self.taken != self.in_else
+    /// Begins the next branch, whose condition is true if `holds`.
+    const fn branch(&mut self, holds: bool) {
+        self.selected = self.outer && holds && !self.done;
+        self.done |= self.selected;
     }
 }
 
@@ -29,32 +34,37 @@ impl Open {
 /// # Errors
 /// Returns the line number and the reason.
 pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
-    if !source.contains(".if") && !source.contains(".else") && !source.contains(".endif") {
+    if ![".if", ".else", ".endif"].iter().any(|word| source.contains(word)) {
         return Ok(Cow::Borrowed(source));
     }
     let mut selected = String::with_capacity(source.len());
     let mut constants = Symbols::new();
     let mut open: Vec<Open> = Vec::new();
     for (number, text) in (1..).zip(source.lines()) {
-        let active = open.last().is_none_or(Open::selects);
+        let active = open.last().is_none_or(|open| open.selected);
         let code = text.split("//").next().unwrap_or_default().trim();
         let (word, rest) = code.split_once(char::is_whitespace).unwrap_or((code, ""));
+        let holds = |constants| evaluate(rest, constants).map_err(|reason| (number, format!("{word}: {reason}")));
         match word {
-            // The condition of an excluded `.if` is not evaluated, because its constants may be missing.
+            // The condition of an excluded branch is not evaluated, because its constants may be missing.
             ".if" => {
-                let value = if active { evaluate(rest, &constants) } else { Ok(0) };
-                let taken = value.map_err(|reason| (number, format!(".if: {reason}")))? != 0;
-                open.push(Open { line: number, taken, in_else: false, outer: active });
+                let mut opened = Open { line: number, outer: active, selected: false, done: false, ended: false };
+                opened.branch(active && holds(&constants)? != 0);
+                open.push(opened);
             }
-            ".else" => match open.last_mut() {
-                Some(open) if !open.in_else => open.in_else = true,
-                _ => return Err((number, ".else without .if".to_owned())),
-            },
+            ".elseif" | ".else" => {
+                let Some(open) = open.last_mut().filter(|open| !open.ended) else {
+                    return Err((number, format!("{word} without .if")));
+                };
+                open.ended = word == ".else";
+                let possible = open.outer && !open.done;
+                open.branch(possible && (open.ended || holds(&constants)? != 0));
+            }
             ".endif" => {
                 open.pop().ok_or((number, ".endif without .if".to_owned()))?;
             }
             _ if active => {
-                define(code, &mut constants);
+                code.split(';').for_each(|statement| define(statement.trim(), &mut constants));
                 selected.push_str(text);
             }
             _ => {}

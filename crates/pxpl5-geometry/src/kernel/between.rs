@@ -1,9 +1,9 @@
 //! Code of the graphics processor for triangles between two views. It records the corners of triangles in both views,
 //! and makes commands for any view in between.
 //!
-//! The sources are kernels/ends.s, blend.s and between.s.
+//! The sources are kernels/ends.s and kernels/compiled.s.
 
-use super::Kernel;
+use super::{COMPILED, Kernel, KernelList, PARAMETERS, PICTURE, SCALAR, Schedule, choices};
 
 /// Number of words of a triangle's record for two views.
 ///
@@ -19,29 +19,27 @@ impl Kernel {
     /// a strip of screen lines.
     ///
     /// The code is like the compiled kernel, for every optimization level. It stores the bounding box of each command.
-    /// Execution begins at the label `start`; kernels/between.s lists the registers.
+    /// Execution begins at the label `start`; kernels/compiled.s lists the registers.
     #[must_use]
     pub fn between_source(&self) -> String {
-        let record = include_str!("../../kernels/ends_record.s");
-        let list = include_str!("../../kernels/list_triangles.s");
-        let common = [include_str!("../../kernels/parameters.s"), list, self.picture.source(), self.cull(), record];
-        let one = include_str!("../../kernels/compiled_one.s");
-        let corner = include_str!("../../kernels/compiled_corner.s");
-        let triangle = self.compiled([one, include_str!("../../kernels/between.s"), corner]);
-        [common.as_slice(), &triangle, &[include_str!("../../kernels/box_kept.s")]].concat().join("\n")
+        let own = Self {
+            schedule: Schedule::Compiled,
+            list: KernelList::Triangles,
+            binned: false,
+            keeps_boxes: true,
+            both_eyes: false,
+            ..*self
+        };
+        let common = [&own.choices(true), PARAMETERS, include_str!("../../kernels/list.s"), PICTURE];
+        [&common, COMPILED.as_slice()].concat().join("\n")
     }
 
     /// Returns the source with two functions. The function at the label `keepends` records triangles in two views. The
     /// function at the label `blend` interpolates between the matrices of the views.
     #[must_use]
     pub fn ends_source() -> String {
-        [
-            include_str!("../../kernels/parameters.s"),
-            include_str!("../../kernels/setup_scalar.s"),
-            include_str!("../../kernels/ends_record.s"),
-            include_str!("../../kernels/ends.s"),
-            include_str!("../../kernels/blend.s"),
-        ]
-        .join("\n")
+        // The records have corners only, so their surface does not matter.
+        let choices = choices(&[("PHONG", false)]);
+        [&choices, PARAMETERS, SCALAR, include_str!("../../kernels/ends.s")].join("\n")
     }
 }

@@ -1,3 +1,5 @@
+// Macros of the scalar set-up, for compiled code and the clipper.
+
 // From three corners at CORNERS to the words of a command at r18 and its bins: functions, locals in registers, scalar floating point
 // with loads in its shadow. What includes it gives the macros `firstcorner`, `secondcorner` (the third lies behind it), `surfaceof`
 // (component k of a corner's surface, counted from the corner, to r10), `finish` and `steep`.
@@ -288,3 +290,89 @@ oriented\@: fst.l f16, DX1(r2)
         adds    COMMAND_BYTES, r18, r18
         .endm
 
+// The light at the vertex at r5, whose normal turns away as `away` of the structure at r6 says: 0 to 1 in f16; the colour in r8.
+
+        .macro  intensity away
+        fld.l   P_LIGHT(r20), f16
+        fld.l   NORMAL(r5), f20
+        fld.l   P_LIGHT+4(r20), f17
+        fld.l   NORMAL+4(r5), f21
+        fmul.ss f16, f20, f16
+        fld.l   P_LIGHT+8(r20), f18
+        fld.l   NORMAL+8(r5), f22
+        fmul.ss f17, f21, f17
+        fld.l   \away(r6), f8
+        fadd.ss f16, f17, f16
+        fmul.ss f18, f22, f18
+        fadd.ss f16, f18, f16               // the cosine
+        pfgt.ss f8, f0, f0
+        bnc     facing\@
+        fsub.ss f0, f16, f16                // of the other side
+facing\@: pfgt.ss f16, f0, f0
+        bc      lit\@
+        fmov.ss f0, f16
+lit\@:    fld.l   P_DIFFUSE(r20), f8
+        fld.l   P_AMBIENT(r20), f9
+        fmul.ss f8, f16, f16
+        fld.l   P_ONE(r20), f10
+        fadd.ss f9, f16, f16
+        pfle.ss f0, f16, f0                 // 0 to 1
+        bnc     least\@
+        fmov.ss f0, f16
+least\@:  pfgt.ss f16, f10, f0
+        bnc     most\@
+        fmov.ss f10, f16
+most\@: ld.l    COLOUR(r5), r8
+        .endm
+
+.if PHONG
+// A command: enable; three edges; depth compared, depth loaded again; normal x, y, z; the object's colour.
+COMMAND_BYTES = 128
+
+// The colour of the triangle's first corner, and its instruction head
+        .macro  finish
+        ld.l    P_HEADS+28(r20), r10
+        ld.l    COLOUR(r16), r11
+        st.l    r10, 120(r18)
+        st.l    r11, 124(r18)
+        .endm
+.else
+// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+COMMAND_BYTES = 120
+
+// Nothing follows the planes.
+        .macro  finish
+        .endm
+.endif
+
+// How normals of corners turn, for the kernels whose corners are structures in memory. place.s turns the rows themselves, in doubles and
+// once for a structure: it has neither.
+
+// r8 = r20 if three corners face the eye on the whole, else 24 more: what P_SIDES and the place behind it are found by. The first
+// one's measure of turning away lies at `at` of the frame, the others `bytes` behind each other.
+        .macro  sided at, bytes
+        fld.l   \at(r2), f8
+        fld.l   \at+\bytes(r2), f9
+        fld.l   \at+2*\bytes(r2), f10
+        fadd.ss f8, f9, f8
+        mov     r20, r8
+        fadd.ss f8, f10, f8
+        pfgt.ss f8, f0, f0
+        bnc     facing
+        adds    24, r20, r8
+facing:
+        .endm
+
+// f16 = the normal in f20 f21 f22 along the axis of the eye whose row is at r11, less the block's P_EYE; r11 to the next, r9 one less
+        .macro  alongaxis
+        fld.l   P_EYE(r11), f16
+        fld.l   P_EYE+4(r11), f17
+        fld.l   P_EYE+8(r11), f18
+        adds    -1, r9, r9
+        fmul.ss f16, f20, f16
+        fmul.ss f17, f21, f17
+        fadd.ss f16, f17, f16
+        fmul.ss f18, f22, f18
+        adds    16, r11, r11
+        fadd.ss f16, f18, f16
+        .endm

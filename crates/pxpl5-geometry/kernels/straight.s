@@ -1,3 +1,324 @@
+// The kernel of straight code (Schedule::Straight).
+
+// Clip coordinates of a corner and the tests of the guard band in straight code.
+
+// clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18
+        .macro  row n, k
+        fld.l   P_ROWS+16*\k(r20), f8
+        fmul.ss f8, f16, f9
+        fld.l   P_ROWS+16*\k+4(r20), f8
+        fmul.ss f8, f17, f10
+        fadd.ss f9, f10, f9
+        fld.l   P_ROWS+16*\k+8(r20), f8
+        fmul.ss f8, f18, f10
+        fadd.ss f9, f10, f9
+        fld.l   P_ROWS+16*\k+12(r20), f8
+        fadd.ss f9, f8, f9
+        fst.l   f9, CLIP+16*\n+4*\k(r2)
+        .endm
+
+// relative to the eye
+        .macro  relative n, k, to
+        fld.l   32*\n+4*\k(r16), f8
+        fld.l   P_ORIGIN+4*\k(r20), f9
+        fsub.ss f8, f9, \to
+        .endm
+
+// to the clipper unless a <= b
+        .macro  need a, b
+        pfle.ss \a, \b, f0
+        bc      clip
+        .endm
+
+// |coordinate k| <= guard k * w
+        .macro  side n, k
+        fld.l   CLIP+16*\n+12(r2), f8
+        fld.l   P_GUARD+4*\k(r20), f9
+        fmul.ss f9, f8, f9
+        fld.l   CLIP+16*\n+4*\k(r2), f10
+        need    f10, f9
+        fsub.ss f0, f10, f10
+        need    f10, f9
+        .endm
+
+        .macro  inside n
+        side    \n, 0
+        side    \n, 1
+        fld.l   CLIP+16*\n+8(r2), f10
+        fld.l   CLIP+16*\n+12(r2), f8
+        need    f0, f10
+        need    f10, f8
+        fld.l   P_GUARD+8(r20), f9
+        need    f9, f8
+        fld.l   P_GUARD+12(r20), f9
+        need    f8, f9
+        .endm
+
+        .macro  corner n
+        relative \n, 0, f16
+        relative \n, 1, f17
+        relative \n, 2, f18
+        row     \n, 0
+        row     \n, 1
+        row     \n, 2
+        row     \n, 3
+        .endm
+
+// What both surface routines of straight code begin with: normals, and how far each turns away from the eye. Arithmetic and its
+// order are those of the native code.
+
+// an operation for each corner through a pipe of three stages
+        .macro  three op, a0, b0, a1, b1, a2, b2, d0, d1, d2
+        \op     \a0, \b0, f0
+        \op     \a1, \b1, f0
+        \op     \a2, \b2, f0
+        \op     f0, f0, \d0
+        \op     f0, f0, \d1
+        \op     f0, f0, \d2
+        .endm
+
+// d = (u x + v y) + w z for each corner; u0 to u2 are lost, f20 to f25 used
+        .macro  sum u0, u1, u2, v0, v1, v2, w0, w1, w2, x0, x1, x2, y0, y1, y2, z0, z1, z2, t0, t1, t2, d0, d1, d2
+        pfmul.ss \u0, \x0, f0
+        pfmul.ss \u1, \x1, f0
+        pfmul.ss \u2, \x2, f0
+        pfmul.ss \v0, \y0, f20
+        pfmul.ss \v1, \y1, f21
+        pfmul.ss \v2, \y2, f22
+        pfmul.ss \w0, \z0, f23
+        pfmul.ss \w1, \z1, f24
+        pfmul.ss \w2, \z2, f25
+        pfadd.ss f20, f23, f0
+        pfadd.ss f21, f24, f0
+        pfadd.ss f22, f25, f0
+        pfmul.ss f0, f0, \t0
+        pfmul.ss f0, f0, \t1
+        pfmul.ss f0, f0, \t2
+        pfadd.ss f0, f0, f20
+        pfadd.ss f0, f0, f21
+        pfadd.ss f0, f0, f22
+        three   pfadd.ss, f20, \t0, f21, \t1, f22, \t2, \d0, \d1, \d2
+        .endm
+
+// the same with weights that all corners share, which are lost
+        .macro  weighted u, v, w, x0, x1, x2, y0, y1, y2, z0, z1, z2, d0, d1, d2
+        sum     \u, \u, \u, \v, \v, \v, \w, \w, \w, \x0, \x1, \x2, \y0, \y1, \y2, \z0, \z1, \z2, \u, \v, \w, \d0, \d1, \d2
+        .endm
+
+// row k of the normals at f4, f8, f12 in eye coordinates
+        .macro  direction k, d0, d1, d2
+        fld.l   P_EYE+16*\k(r20), f16
+        fld.l   P_EYE+16*\k+4(r20), f17
+        fld.l   P_EYE+16*\k+8(r20), f18
+        weighted f16, f17, f18, f4, f8, f12, f5, f9, f13, f6, f10, f14, \d0, \d1, \d2
+        .endm
+
+// how far the normal x y z of corner n turns away from the eye
+        .macro  away n, x, y, z, to
+        fld.l   32*\n(r5), f20
+        fld.l   P_ORIGIN(r20), f21
+        fsub.ss f20, f21, f20
+        fmul.ss f20, \x, f22
+        fld.l   32*\n+4(r5), f20
+        fld.l   P_ORIGIN+4(r20), f21
+        fsub.ss f20, f21, f20
+        fmul.ss f20, \y, f23
+        fadd.ss f22, f23, f22
+        fld.l   32*\n+8(r5), f20
+        fld.l   P_ORIGIN+8(r20), f21
+        fsub.ss f20, f21, f20
+        fmul.ss f20, \z, f23
+        fadd.ss f22, f23, \to
+        .endm
+
+// In: r5 triangle. Out: normals as the display list holds them at f4, f8, f12; how far they turn away from the eye in f11 f15 f19.
+        .macro  normals
+        fld.q   NORMAL(r5), f4
+        fld.q   NORMAL+32(r5), f8
+        fld.q   NORMAL+64(r5), f12
+        away    0, f4, f5, f6, f11
+        away    1, f8, f9, f10, f15
+        away    2, f12, f13, f14, f19
+        .endm
+
+.if PHONG
+// Surfaces for Phong shading: normals of the corners, turned over if they face away from the eye on the whole, in
+// units of the command's expressions, and half a unit.
+
+// A command: enable; three edges; depth compared, depth loaded again; normal x, y, z; the object's colour.
+COMMAND_BYTES = 128
+
+// The colour of the triangle's first corner, and its instruction head
+        .macro  finish triangle
+        ld.l    P_HEADS+28(r20), r6
+        ld.l    COLOUR(\triangle), r7
+        st.l    r6, 120(r18)
+        st.l    r7, 124(r18)
+        .endm
+
+        .macro  leave from, at
+        fxfr    \from, r11
+        shl     6, r11, r11
+        adds    r14, r11, r11
+        st.l    r11, \at(r6)
+        .endm
+
+        .macro  component k, n0, n1, n2
+        three   pfadd.ss, \n0, f5, \n1, f5, \n2, f5, f12, f13, f14
+        leave   f12, SURFACE_WORD*\k
+        leave   f13, SURFACE_WORD*\k+SURFACE_CORNER
+        leave   f14, SURFACE_WORD*\k+2*SURFACE_CORNER
+        .endm
+
+// In: r5 triangle, r6 where the words go. Changes r11, r14 and all floating-point registers.
+        .align  32
+surface: normals
+        direction 0, f26, f27, f28
+        direction 1, f29, f30, f31
+        direction 2, f2, f3, f7
+        fadd.ss f11, f15, f4
+        fadd.ss f4, f19, f4
+        pfgt.ss f4, f0, f0
+        bnc     facing
+        three   pfsub.ss, f0, f26, f0, f27, f0, f28, f26, f27, f28
+        three   pfsub.ss, f0, f29, f0, f30, f0, f31, f29, f30, f31
+        three   pfsub.ss, f0, f2, f0, f3, f0, f7, f2, f3, f7
+facing: fld.l   P_ROUND_S(r20), f5
+        mov     0xB0000200, r14             // - 64 * bits of 1.5 * 2^23 + half a unit + 2^31
+        component 0, f26, f27, f28
+        component 1, f29, f30, f31
+        component 2, f2, f3, f7
+        bri     r1
+        nop
+.elseif PRECOMPUTED
+// Surfaces of precomputed colours: those of the corners, 0 to 255 in units of 1/4096, and half a unit.
+
+// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+COMMAND_BYTES = 120
+
+// Nothing follows the planes.
+        .macro  finish triangle
+        .endm
+
+        .macro  leave shift, colour, at
+        shr     \shift, \colour, r11
+        and     255, r11, r11
+        shl     12, r11, r11
+        or      2048, r11, r11
+        st.l    r11, \at(r6)
+        .endm
+
+        .macro  component k
+        leave   16-8*\k, r7, SURFACE_WORD*\k
+        leave   16-8*\k, r8, SURFACE_WORD*\k+SURFACE_CORNER
+        leave   16-8*\k, r9, SURFACE_WORD*\k+2*SURFACE_CORNER
+        .endm
+
+// In: r5 triangle, r6 where the words go. Changes r7 to r9 and r11.
+        .align  32
+surface: ld.l   COLOUR(r5), r7
+        ld.l    COLOUR+32(r5), r8
+        ld.l    COLOUR+64(r5), r9
+        component 0
+        component 1
+        component 2
+        bri     r1
+        nop
+.else
+// Surfaces for Gouraud shading: lit colours of the corners, 0 to 255 in units of 1/4096, and half a unit.
+
+// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
+COMMAND_BYTES = 120
+
+// Nothing follows the planes.
+        .macro  finish triangle
+        .endm
+
+// the cosine c of the light, of the normal's other side where it turns away by d; at least 0
+        .macro  cosine d, c
+        pfgt.ss \d, f0, f0
+        bnc     facing\@
+        fsub.ss f0, \c, \c
+facing\@: pfgt.ss \c, f0, f0
+        bc      lit\@
+        fmov.ss f0, \c
+lit\@:  nop
+        .endm
+
+// 0 to 1
+        .macro  within s
+        pfle.ss f0, \s, f0
+        bnc     least\@
+        fmov.ss f0, \s
+least\@: pfgt.ss \s, f6, f0
+        bnc     most\@
+        fmov.ss f6, \s
+most\@: nop
+        .endm
+
+// 256 times 8 bits of a colour, by way of 2^23
+        .macro  eight shift, colour, to
+        shr     \shift, \colour, r11
+        and     255, r11, r11
+        shl     8, r11, r11
+        or      r10, r11, r11
+        ixfr    r11, \to
+        .endm
+
+        .macro  leave from, at
+        fxfr    \from, r11
+        shl     4, r11, r11
+        adds    r14, r11, r11
+        st.l    r11, \at(r6)
+        .endm
+
+        .macro  component k
+        eight   16-8*\k, r7, f12
+        eight   16-8*\k, r8, f13
+        eight   16-8*\k, r9, f14
+        three   pfsub.ss, f12, f4, f13, f4, f14, f4, f12, f13, f14
+        three   pfmul.ss, f12, f8, f13, f9, f14, f10, f12, f13, f14
+        three   pfadd.ss, f12, f5, f13, f5, f14, f5, f12, f13, f14
+        leave   f12, SURFACE_WORD*\k
+        leave   f13, SURFACE_WORD*\k+SURFACE_CORNER
+        leave   f14, SURFACE_WORD*\k+2*SURFACE_CORNER
+        .endm
+
+// In: r5 triangle, r6 where the words go. Changes r7 to r14 and all floating-point registers.
+        .align  32
+surface: normals
+        fld.l   P_LIGHT(r20), f16
+        fld.l   P_LIGHT+4(r20), f17
+        fld.l   P_LIGHT+8(r20), f18
+        weighted f16, f17, f18, f4, f8, f12, f5, f9, f13, f6, f10, f14, f26, f27, f28
+        fmov.ss f26, f8
+        fmov.ss f27, f9
+        fmov.ss f28, f10
+        cosine  f11, f8
+        cosine  f15, f9
+        cosine  f19, f10
+        fld.l   P_AMBIENT(r20), f4
+        fld.l   P_DIFFUSE(r20), f5
+        fld.l   P_ONE(r20), f6
+        three   pfmul.ss, f5, f8, f5, f9, f5, f10, f8, f9, f10
+        three   pfadd.ss, f4, f8, f4, f9, f4, f10, f8, f9, f10
+        within  f8
+        within  f9
+        within  f10
+        ld.l    COLOUR(r5), r7
+        ld.l    COLOUR+32(r5), r8
+        ld.l    COLOUR+64(r5), r9
+        orh     0x4B00, r0, r10             // bits of 2^23
+        mov     0x4C000800, r14             // - 16 * bits of 1.5 * 2^23 + half a unit
+        fld.l   P_TWO23(r20), f4
+        fld.l   P_ROUND_S(r20), f5
+        component 0
+        component 1
+        component 2
+        bri     r1
+        nop
+.endif
+
 // One Gouraud triangle after another, as a compiler of 1989 would give it: every statement loads its variables from
 // the stack frame, computes with scalar operations and stores the result; the routines for corners, edges and planes
 // are written out at every call. Larger than the 4 KB instruction cache.

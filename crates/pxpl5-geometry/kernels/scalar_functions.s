@@ -1,3 +1,5 @@
+// Functions of the scalar set-up.
+
 // ---- edge from the corner at r10 to that at r11, to the words at r12: a = -dy, b = dx,
 // c = floor((dx (8 - y) - dy (8 - x) - tie) / 16)
 edge:   fld.d   C_X(r10), f8

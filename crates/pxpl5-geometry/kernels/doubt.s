@@ -1,1 +1,0 @@
-doubt   = or doubted, flat

@@ -1,2 +1,0 @@
-        // corners in doubt did not come here
-doubted = or r0, r0

@@ -1,1 +1,0 @@
-        st.l r0, R_SIDE(r6)
