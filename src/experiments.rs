@@ -107,6 +107,10 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 ///     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
 ///         self.0.load(machine, setup)
 ///     }
+/// }
+///
+/// // The rules say what its pictures are, and which view a part of a picture shows.
+/// impl PictureRules for Mine {
 ///     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
 ///         self.0.pictures(record, end)
 ///     }
@@ -136,7 +140,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 /// assert_eq!(mine.record().trace_hash(), theirs.record().trace_hash());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{Pipeline, Setup, Source};
+pub use pxpl5_run::{PictureRules, Pipeline, Setup, Source};
 
 /// ```
 /// use pxpl5::{Viewpoint, prelude::*};

@@ -91,7 +91,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A pipeline of your own implements [`Pipeline`] with the types of [`firmware`]. A display of your own implements
+//! A pipeline of your own implements [`Pipeline`] and [`PictureRules`] with the types of [`firmware`]. A display of your own implements
 //! [`device::Display`]. The guide has complete examples of both.
 //!
 //! # Modules and features
@@ -223,8 +223,8 @@ pub mod prelude {
     pub use crate::tracking::tracker::TrackerConfig;
     pub use crate::{
         Board, Experiment, ExperimentError, Eye, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
-        ObservedKind, Outcome, Pause, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl, Report, Results,
-        Slats, Stepper, SurfaceId,
+        ObservedKind, Outcome, Pause, PictureRules, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl,
+        Report, Results, Slats, Stepper, SurfaceId,
     };
     pub use glam::{DQuat, DVec3, Vec3};
 }

@@ -11,8 +11,8 @@ use pxpl5_cli::pxpl5::firmware::{
     region_messages, swap_request,
 };
 use pxpl5_cli::pxpl5::{
-    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureTimes, Pipeline,
-    PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
+    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureRules, PictureTimes,
+    Pipeline, PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -121,7 +121,9 @@ impl Pipeline for OneAtATime {
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }
+}
 
+impl PictureRules for OneAtATime {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let shown = record.observation().frames(1).into_values();
         let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);

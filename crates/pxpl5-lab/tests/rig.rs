@@ -6,7 +6,7 @@ use pxpl5_lab::StudyError;
 use pxpl5_lab::rig::Rig;
 use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
-use pxpl5_run::{PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
+use pxpl5_run::{PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
 use pxpl5_sim::Time;
 use std::sync::{Arc, Mutex};
 use tracking::rig::Measurement;
@@ -120,27 +120,36 @@ impl Pipeline for Faulty {
     fn name(&self) -> &'static str {
         "faulty"
     }
+
     fn eyes(&self) -> usize {
         self.inner.eyes()
     }
+
     fn layout(&self) -> Layout {
         self.inner.layout()
     }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let views = if self.fault == Fault::StaleViews { stale(&setup.views) } else { Arc::clone(&setup.views) };
         self.inner.load(machine, &Setup { views, ..setup.clone() })
     }
+}
+
+impl PictureRules for Faulty {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let early = if self.fault == Fault::EarlyStamps { 16_683_333_333 } else { 0 };
         let pictures = self.inner.pictures(record, end).into_iter();
         pictures.map(|times| PictureTimes { shown_at: Time(times.shown_at.0 - early), ..times }).collect()
     }
+
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         self.inner.periods_a_picture(record)
     }
+
     fn latency_definition(&self) -> &'static str {
         self.inner.latency_definition()
     }
+
     fn due_definition(&self) -> &'static str {
         self.inner.due_definition()
     }

@@ -15,7 +15,7 @@ pub enum Keep {
     /// The streaming observer of [`Experiment::observed_by`](crate::Experiment::observed_by) computes the results for a
     /// tracked head. Without an observer, the report states that these results are missing. Two kinds of runs keep
     /// everything nevertheless: a run that records messages, and a run of a pipeline that needs old records
-    /// ([`Pipeline::can_discard_records`](crate::Pipeline::can_discard_records)).
+    /// ([`PictureRules::can_discard_records`](crate::PictureRules::can_discard_records)).
     Statistics,
     /// Like [`Keep::Statistics`], but also allows recorded messages, and uses no streaming observer.
     ///

@@ -77,7 +77,7 @@ pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
 pub use level::Level;
 pub use outcome::Outcome;
 pub use picture_ends::{PictureResult, WARM_UP_PICTURES};
-pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
+pub use pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::faces::{
     FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, OrientationTiming, RequestedUpdate, RequestedUpdates,
     RotationLatency, SegmentedScene, ShownUpdate,

@@ -100,8 +100,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine, and the rules that determine the times of its pictures.
-pub trait Pipeline: Any + Debug + Send + Sync {
+/// A program for a whole machine: how it draws. [`PictureRules`] states what its pictures are.
+pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
 
@@ -165,6 +165,20 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
+    /// Returns true if the firmware itself knows when a view will be seen.
+    fn knows_when_seen(&self) -> bool {
+        false
+    }
+
+    /// Returns true if a whole picture is drawn for one head pose. Only such a picture can be shifted by the display to
+    /// correct the pose.
+    fn has_one_pose(&self) -> bool {
+        true
+    }
+}
+
+/// The rules that determine the times and contents of a pipeline's pictures.
+pub trait PictureRules {
     /// Returns the pictures that were begun and that, at `end`, are shown or have missed their deadline. The pictures
     /// are in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
@@ -177,7 +191,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         0
     }
 
-    /// Returns true if [`Pipeline::pictures`] and [`Pipeline::late_regions`] need no old records.
+    /// Returns true if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.
     ///
     /// After [`Machine::discard_before`], both functions must give the same results for later times. Only then can a
     /// long run discard records.
@@ -193,7 +207,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns the number of periods of the first display from one due picture to the next. Returns `None` if no
     /// picture is ever due.
     ///
-    /// All counts and rates follow from this number and from [`Pipeline::pictures`]: see
+    /// All counts and rates follow from this number and from [`PictureRules::pictures`]: see
     /// [`DuePictures`](crate::DuePictures).
     fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
@@ -206,20 +220,9 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// pictures, the sentence gives the reason.
     fn due_definition(&self) -> &'static str;
 
-    /// Returns the number of entries of [`Pipeline::pictures`] that make up one whole picture.
+    /// Returns the number of entries of [`PictureRules::pictures`] that make up one whole picture.
     fn updates_per_picture(&self, _record: &Record) -> f64 {
         1.0
-    }
-
-    /// Returns true if the firmware itself knows when a view will be seen.
-    fn knows_when_seen(&self) -> bool {
-        false
-    }
-
-    /// Returns true if a whole picture is drawn for one head pose. Only such a picture can be shifted by the display to
-    /// correct the pose.
-    fn has_one_pose(&self) -> bool {
-        true
     }
 
     /// Returns the index of the copy to which an arrival belongs: 0, or 1 for the second copy. Each copy is timed

@@ -27,7 +27,7 @@ pub struct Summary {
     /// Time for which a region of 15,360 pixels occupies its display port, in microseconds. NaN if no region arrived.
     pub region_copy_us: f64,
     /// Mean time from the first to the last word of a picture's first copy, in milliseconds. See
-    /// [`Pipeline::copy_part`](crate::Pipeline::copy_part).
+    /// [`PictureRules::copy_part`](crate::PictureRules::copy_part).
     pub first_copy_ms: f64,
     /// Mean time from the first to the last word of a picture's second copy, in milliseconds. Zero if pictures have
     /// only one copy. NaN if no picture was drawn.

@@ -4,7 +4,7 @@
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Board, ConfigError, Machine, MachineConfig, Record, RunError};
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, Pause, PictureTimes, Pipeline, Pixels, Setup, Slats};
+use pxpl5_run::{Experiment, ExperimentError, Pause, PictureRules, PictureTimes, Pipeline, Pixels, Setup, Slats};
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
 
@@ -35,7 +35,9 @@ impl Pipeline for Waiting {
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }
+}
 
+impl PictureRules for Waiting {
     fn pictures(&self, _: &Record, _: Time) -> Vec<PictureTimes> {
         Vec::new()
     }

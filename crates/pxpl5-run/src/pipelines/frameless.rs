@@ -4,7 +4,7 @@ use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::picture_ends::PictureResult;
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
@@ -147,6 +147,12 @@ impl Pipeline for Frameless {
         Ok(())
     }
 
+    fn has_one_pose(&self) -> bool {
+        false
+    }
+}
+
+impl PictureRules for Frameless {
     /// Returns the updates. The last block of an update defines the times of the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
@@ -179,10 +185,6 @@ impl Pipeline for Frameless {
 
     fn light(&self, _: &Record, times: &PictureTimes) -> Time {
         times.shown_at
-    }
-
-    fn has_one_pose(&self) -> bool {
-        false
     }
 
     fn latency_definition(&self) -> &'static str {

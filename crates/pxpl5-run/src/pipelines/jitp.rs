@@ -3,7 +3,7 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::picture_ends::PictureResult;
-use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::{Share, TransformCost};
@@ -185,6 +185,12 @@ impl Pipeline for Jitp {
         Ok(())
     }
 
+    fn has_one_pose(&self) -> bool {
+        self.viewpoint == Viewpoint::Field
+    }
+}
+
+impl PictureRules for Jitp {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
@@ -262,10 +268,6 @@ impl Pipeline for Jitp {
                 on_screen: reading == Interpolation::Screen,
             },
         })
-    }
-
-    fn has_one_pose(&self) -> bool {
-        self.viewpoint == Viewpoint::Field
     }
 }
 

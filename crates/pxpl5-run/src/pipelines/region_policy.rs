@@ -6,7 +6,7 @@
 
 use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
@@ -272,7 +272,9 @@ impl Pipeline for PolicyPipeline {
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }
+}
 
+impl PictureRules for PolicyPipeline {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let shown = record.observation().frames(1).into_values();
         let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);

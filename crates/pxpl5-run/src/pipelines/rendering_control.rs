@@ -2,7 +2,7 @@
 
 use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
@@ -167,7 +167,9 @@ impl Pipeline for RenderingControl {
         }
         Ok(())
     }
+}
 
+impl PictureRules for RenderingControl {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let stages = record.stages();
         let frames = record.observation().frames(self.eyes()).into_iter();

@@ -3,7 +3,7 @@
 use super::{late_regions, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::picture_ends::PictureResult;
-use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_framebuffer::Video;
@@ -201,7 +201,9 @@ impl Pipeline for Slats {
         }
         Ok(())
     }
+}
 
+impl PictureRules for Slats {
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         // Collect the arrivals of each picture and the fields with late regions.
         let observation = record.observation();

@@ -9,7 +9,7 @@ use super::plan::{Cycles, Full, Plan, Updates};
 use super::policy::FacePolicy;
 use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
 use crate::pipelines::faces::segments::SegmentedScene;
 use crate::pipelines::{region_has_room, shading_value, swapped_in};
@@ -381,6 +381,16 @@ impl Pipeline for FacePipeline {
         Ok(())
     }
 
+    fn has_one_pose(&self) -> bool {
+        false
+    }
+
+    fn knows_when_seen(&self) -> bool {
+        self.source == FaceSource::Ideal
+    }
+}
+
+impl PictureRules for FacePipeline {
     /// Returns the updates of all display memories, in the order in which they are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = display_of(record) else { return Vec::new() };
@@ -419,14 +429,6 @@ impl Pipeline for FacePipeline {
 
     fn due_definition(&self) -> &'static str {
         "an update is never due: until it is shown, the display shows the old faces in the right direction, from the old eye position"
-    }
-
-    fn has_one_pose(&self) -> bool {
-        false
-    }
-
-    fn knows_when_seen(&self) -> bool {
-        self.source == FaceSource::Ideal
     }
 }
 
