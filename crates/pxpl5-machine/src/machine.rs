@@ -26,7 +26,7 @@ use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
-use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
+use pxpl5_sim::{Context, EventQueue, Phase, Time};
 use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -73,11 +73,6 @@ pub const DEADLOCK_TICKS: u64 = 120;
 /// processor's programs.
 const EVENTS_OF_A_TICK: u64 = 2;
 
-/// Returns the delay of a signal that leaves a board: one cycle of the boards' 40 MHz clock.
-fn cycle() -> Span {
-    Clock::from_hz(40_000_000).map_or(Span(25_000), |clock| clock.span(Cycles(1)))
-}
-
 impl Machine {
     /// Builds a machine in which each display has ring ports for `pictures` pictures: 1, or 2 for two eyes.
     ///
@@ -94,11 +89,12 @@ impl Machine {
         let ring =
             Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
         // Build the boards in the order of their ports.
-        let host = GpBoard::new(ports.host, config.host.board(), cycle());
-        let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
+        let signal = config.ring.signal();
+        let host = GpBoard::new(ports.host, config.host.board(), signal);
+        let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, signal));
         // All renderers share one pool for their pixel arrays.
         let pool = ArrayPool::new(layout);
-        let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
+        let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), signal, pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
@@ -312,7 +308,7 @@ impl Machine {
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
-        self.queue.schedule(now + cycle(), Phase::Work, Event::Edge);
+        self.queue.schedule(now + self.record.config.ring.signal(), Phase::Work, Event::Edge);
     }
 
     /// Handles a display's clock tick. The first display's tick also signals a retrace to the first graphics processor.

@@ -51,6 +51,7 @@ fn cases() -> impl Strategy<Value = RingCase> {
                 let tick = Span::from_ns(10);
                 let timing = RingTiming {
                     word_ns: 10 * word_ticks,
+                    signal_ns: 10,
                     overhead_words,
                     hop_ns: 10 * hop_ticks * u64::from(hop_ticks * u64::from(n_nodes) <= 16 * word_ticks),
                     channels,
