@@ -9,8 +9,8 @@ const BLOCK: u64 = 256;
 /// Compressed instants by ascending numbers.
 ///
 /// Each entry stores how many numbers were skipped before it, and the difference from the expected instant. The
-/// expected instant assumes that the step before the last one is repeated. Steps may alternate, as for two fields, or
-/// for two and three periods in turn. The difference is then 0 and takes one byte.
+/// expected instant is the last instant plus the step before the last step. If two steps alternate, for example the
+/// steps of two fields, or of two and three periods, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,

@@ -48,8 +48,8 @@ impl Experiment {
 
     /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs only in the predictor.
     ///
-    /// Hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this function, so that
-    /// they make one dry run for all predictors.
+    /// This method is hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this
+    /// function, so that they make one dry run for all predictors.
     #[doc(hidden)]
     #[must_use]
     pub fn with_dry_run(self, rehearsed: Option<Arc<DryRun>>) -> Self {

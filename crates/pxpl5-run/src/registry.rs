@@ -59,7 +59,7 @@ pub struct LimitCriterion {
     pub goal: Goal,
     /// Kind of triangles in the test scene.
     pub scene: TestScene,
-    /// Number of fields to simulate for each size of the scene. It is large enough to reach a steady state.
+    /// Number of fields to simulate for each size of the scene. The number is large enough to reach a steady state.
     pub fields: u64,
 }
 

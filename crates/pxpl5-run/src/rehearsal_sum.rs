@@ -96,8 +96,8 @@ impl DryRunObserver {
 
     /// Returns the pictures, each with the picture that replaces it.
     ///
-    /// For a display with several memories, only the first memory is timed. It holds the structures that must be drawn
-    /// most often. The last picture of this memory is returned only when its successor is known.
+    /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
+    /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
     fn timed(&mut self, settled: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
         // Leave out the updates of all memories except the first.

@@ -80,7 +80,7 @@ pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, settled: &FinalResults<'_>);
 
-    /// Returns the observer's result. Called once, after the last call of `take`.
+    /// Returns the observer's result. The run calls this method once, after the last call of `take`.
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 

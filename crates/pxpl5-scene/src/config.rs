@@ -21,7 +21,7 @@ pub const IMPORT_RADIUS_M: f64 = 0.148;
 /// Derived for [`crate::Sway`] of scale 1. The gaze deviates by at most 8.5 degrees sideways and 6.5 vertically, with a
 /// tilt of at most 7.5 degrees. The greatest vertical deviation is 6.5 cos 7.5 + 8.5 sin 7.5 = 7.6 degrees. Half the
 /// view's height is 23.4 degrees, so 15.8 remain. The head comes as near as 0.9 times its mean distance, where the
-/// model takes asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
+/// model's angular radius is asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
 pub const WHOLE_DISTANCE_RADII: f64 = 4.4;
 
 /// Distance of the eye from the centre of a built-in model, as a multiple of the model's radius.

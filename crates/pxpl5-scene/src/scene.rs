@@ -207,8 +207,8 @@ impl Scene {
         self.parts
     }
 
-    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). There is
-    /// one for each structure with a motion of its own.
+    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). The list
+    /// has one matrix for each structure with a motion of its own.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
@@ -248,7 +248,7 @@ impl Scene {
 }
 
 /// Returns the centre of the bounding box around balls (centre, radius), and the distance from this centre to the
-/// farthest point of a ball. Without balls both are zero.
+/// farthest point of a ball. Without balls the centre and the distance are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = balls

@@ -168,7 +168,8 @@ impl Hmd {
         self.view(EyePoint::Centre, head)
     }
 
-    /// Returns the distance from the eye to the picture in pixels. An angle with a tangent of 1 covers as many pixels.
+    /// Returns the focal length: the distance from the eye to the flat picture, in pixels. A direction at 45 degrees to
+    /// the optical axis meets the picture at this distance from the middle.
     #[must_use]
     pub fn focal_length_px(&self) -> f64 {
         f64::from(self.config.width_px) / 2.0 / half_width(&self.config)

@@ -284,8 +284,8 @@ impl Pipeline for Slats {
     }
 }
 
-/// Largest number of retraces from a late field's own retrace to the last retrace at which the field can still be shown
-/// under a backup. The lines of the field are scanned twice more within this number.
+/// Number of retraces after a late field's own retrace within which a backup can still show the field. Within these
+/// retraces, the lines of the field are scanned twice more.
 const LATER_RETRACES: u64 = 4;
 
 /// State of the copy of a field to the display.

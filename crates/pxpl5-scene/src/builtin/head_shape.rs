@@ -84,8 +84,8 @@ fn mouth(d: f64, p: DVec3) -> f64 {
     carve(d, parting, 0.25)
 }
 
-/// Returns the distance `d` extended by the ears. Each is a bowl whose front edge lies on the skull and whose rear edge
-/// stands away from the skull.
+/// Returns the distance `d` extended by the ears. Each ear is a bowl whose front edge lies on the skull and whose rear
+/// edge stands away from the skull.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
     // The ear leans back, so its top is further behind than its lobe. Its rear edge is turned outwards.

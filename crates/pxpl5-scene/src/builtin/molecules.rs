@@ -19,8 +19,8 @@ const SECTIONS: usize = 328;
 const APART: f64 = 25.0;
 
 /// Greatest distance between alpha carbons three residues apart that counts as a helix, Ångström. The distance is 5.0
-/// in an ideal alpha helix and above 8 in an extended chain. Both are derived from a rise of 1.5 and 100 degrees per
-/// residue, at a radius of 2.3.
+/// in an ideal alpha helix and above 8 in an extended chain. The distance in a helix is derived from a rise of 1.5 and
+/// a turn of 100 degrees per residue, at a radius of 2.3.
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {

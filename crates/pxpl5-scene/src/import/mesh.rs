@@ -40,8 +40,8 @@ impl Mesh {
         }
     }
 
-    /// Computes a unit normal for every vertex that has none. It is the mean of the normals of the vertex's triangles,
-    /// weighted by area. If these triangles have no area, the normal is +z.
+    /// Computes a unit normal for every vertex that has none. The computed normal is the mean of the normals of the
+    /// vertex's triangles, weighted by area. If these triangles have no area, the normal is +z.
     pub(crate) fn complete_normals(&mut self) {
         let sums = self.sums_of_areas();
         self.normals.resize(self.positions.len(), DVec3::ZERO);

@@ -1,4 +1,4 @@
-//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. It
+//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. A model
 //! therefore needs at most seven times the memory of the file.
 
 use std::hash::{BuildHasher, RandomState};

@@ -17,7 +17,8 @@ const TRIANGLE: usize = 50;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     match announced_bytes(source.bytes) {
-        // Some programs begin the header of a binary file with `solid`. The length of the file decides.
+        // Some programs begin the header of a binary file with `solid`, so only the length of the file shows the
+        // format.
         Some(bytes) if bytes == source.bytes.len() as u64 => read_binary(source),
         _ if begins_as_text(source.bytes) => read_text(source),
         Some(bytes) if bytes > source.bytes.len() as u64 => {

@@ -15,7 +15,7 @@ pub struct ReportCounts {
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
     /// Number of reports rejected because of their time stamp. Such a report was not newer than the last accepted
-    /// report, or followed this report by less than [`table::Gate`]'s `interval`.
+    /// report, or followed this report by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
     /// Number of reports rejected because a head cannot move so fast.
     pub jumps: u64,

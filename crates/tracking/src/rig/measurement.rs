@@ -112,14 +112,15 @@ pub struct Measurement {
     pub outside: Side,
     /// Latencies measured by the time stamps of host and boards.
     pub inside: Side,
-    /// Greatest amount by which the tracking latency on the oscilloscope may exceed that by time stamps, ps. It is the
-    /// detection's delay: one report interval for detection by crossing the vertical.
+    /// Greatest amount by which the tracking latency on the oscilloscope may exceed the tracking latency by time
+    /// stamps, ps. The amount is the delay of the detection: one report interval for detection by crossing the
+    /// vertical.
     pub tracking_bound_ps: u64,
-    /// Greatest amount by which the rendering latency on the oscilloscope may exceed that by time stamps, ps. It is the
-    /// time from the retrace until the beam passes the photodiode.
+    /// Greatest amount by which the rendering latency on the oscilloscope may exceed the rendering latency by time
+    /// stamps, ps. The amount is the time from the retrace until the beam passes the photodiode.
     pub rendering_bound_ps: u64,
-    /// Greatest amount by which the rendering latency on the oscilloscope may be shorter than that by time stamps, ps.
-    /// The amount is 0 unless the pipeline counts a frame as shown at a scanline below the photodiode.
+    /// Greatest amount by which the rendering latency on the oscilloscope may be shorter than the rendering latency by
+    /// time stamps, ps. The amount is 0 unless the pipeline counts a frame as shown at a scanline below the photodiode.
     pub rendering_early_ps: u64,
 }
 
@@ -144,17 +145,17 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam can
-    /// pass the photodiode before this. The rendering latency on the oscilloscope can then be shorter than that by time
-    /// stamps.
+    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. If the beam
+    /// passes the photodiode earlier, the rendering latency on the oscilloscope can be shorter than the rendering
+    /// latency by time stamps.
     #[must_use]
     pub fn with_frames_counted_in_scan(mut self, counted_ps: u64) -> Self {
         self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
         self
     }
 
-    /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing it is
-    /// one report interval, plus the time from the retrace until the beam passes the photodiode.
+    /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing, this
+    /// difference is one report interval, plus the time from the retrace until the beam passes the photodiode.
     #[must_use]
     pub fn bound_ps(&self) -> u64 {
         self.tracking_bound_ps + self.rendering_bound_ps

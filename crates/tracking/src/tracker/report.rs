@@ -3,8 +3,8 @@ use crate::pose::Pose;
 /// A report as the host receives it: a measured pose with its time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerReport {
-    /// Index of the measurement (called a solution). If it grows by more than 1 between two reports, measurements were
-    /// dropped.
+    /// Index of the measurement (called a solution). If the index grows by more than 1 between two reports,
+    /// measurements were dropped.
     pub solution: u64,
     /// Instant at which the measured orientation was true, ps.
     pub measured_ps: u64,

@@ -161,7 +161,7 @@ impl<M: Motion> Reports<M> {
     }
 
     /// Sends a finished measurement at `ready_ps` if the cable is free. Returns the instant at which the host receives
-    /// it, or `None` if the cable is busy.
+    /// the measurement, or `None` if the cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;

@@ -102,7 +102,7 @@ impl OrientationTiming {
 
     /// Returns the time up to which the host used reports for a pixel's orientation, and the instant of the prediction.
     ///
-    /// Before the first report, the host knows the head's initial pose. Returns `None` before an orientation is loaded.
+    /// Before the first report, the host has the head's initial pose. Returns `None` before an orientation is loaded.
     #[must_use]
     pub fn orientation_of_pixel(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;

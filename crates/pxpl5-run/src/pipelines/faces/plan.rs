@@ -134,9 +134,9 @@ pub(super) trait DuePolicy {
 
 /// A plan for priority rendering: in each cycle, a policy selects the memories to redraw.
 ///
-/// A cycle begins when all memories of the previous cycle have been sent, but not in the same field as the previous
-/// cycle. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes one
-/// field and begins with the field.
+/// A cycle begins when all memories of the previous cycle have been sent, but never in the field in which the previous
+/// cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes
+/// one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: Scan,
