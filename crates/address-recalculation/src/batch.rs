@@ -2,8 +2,9 @@
 //!
 //! Directions are sums of three products below 2^53, so doubles hold them exactly. Quotients need no correction either:
 //!
-//! - A quotient is a multiple of 1/(2F) and less than 2^q. F is below 2^(v + m - 1), where v and m are the bits of
-//!   vector and matrix.
+//! - A quotient is a multiple of 1/(2F) and less than 2^q. Here q is the number of bits of a quotient, and F is the
+//!   component of the direction along the face's axis. F is below 2^(v + m - 1), where v and m are the numbers of bits
+//!   of vector and matrix.
 //! - A rounded double near the quotient has an error of at most 2^(q - 54).
 //! - With v + m + q <= 53 this error is less than 1/(2F), so rounding never reaches the next integer.
 
@@ -11,7 +12,8 @@ use crate::address::AddressUnit;
 use crate::orientation::MatrixWords;
 use multiversion::multiversion;
 
-/// Number of pixels per group. It is large enough to amortize a call, and small enough for the first-level cache.
+/// Number of pixels per group. The number is large enough to amortize a call, and small enough for the first-level
+/// cache.
 pub(crate) const BATCH: usize = 64;
 
 type Each<T> = [T; BATCH];

@@ -114,8 +114,8 @@ pub struct MemoryStats {
 
 /// A display memory: the six faces of a cube with depth, in two buffers.
 ///
-/// An update begins with a map of the regions that will arrive. It becomes visible at the first requested retrace at
-/// which all regions are present.
+/// An update begins with a map of the regions that will arrive. The update becomes visible at the first requested
+/// retrace at which all regions are present.
 #[derive(Clone, Debug)]
 pub struct DisplayMemory {
     kind: MemoryKind,

@@ -1,5 +1,5 @@
-//! Renderer of the six faces of a cube around the eye. It takes no simulated time, and serves as an ideal source of
-//! pictures for address recalculation.
+//! Renderer of the six faces of a cube around the eye. The renderer takes no simulated time, and serves as an ideal
+//! source of pictures for address recalculation.
 //!
 //! ```text
 //!  triangles --> [ seen from the eye, axes of a face ] --> [ three edges, 1/w: planes over the face ] --> rows of texels --> FaceSet

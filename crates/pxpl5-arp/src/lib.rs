@@ -8,7 +8,7 @@
 //!
 //! # Behaviour
 //!
-//! - [`Plan`] holds settings by path (`priority.cell_m=5`). Settings that are not given depend on the others.
+//! - [`Plan`] holds settings by path (`priority.cell_m=5`). The defaults of some settings depend on other settings.
 //! - [`World`] cuts a scene at the borders of cells, once.
 //! - [`Simulation::frame`] asks the policy which memories are due for an update at a position of the eye, and passes
 //!   the work to the renderer.

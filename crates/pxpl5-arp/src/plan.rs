@@ -51,7 +51,7 @@ pub struct Plan {
     said: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. It becomes an angle once the display's resolution is known.
+/// A threshold in pixels or texels. The threshold becomes an angle once the display's resolution is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
     /// Threshold in pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.

@@ -62,7 +62,8 @@ pub struct Settings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Decrease of the warp from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
+    /// Rule by which the displacement by warping decreases with the distance from the border to a slower memory.
+    /// [`Falloff::None`] disables warping, so cuts tear.
     pub falloff: Falloff,
     /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,

@@ -9,7 +9,8 @@ pub(crate) struct Job {
     /// Time that the renderer needs to draw the whole update, in seconds.
     pub(crate) work_s: f64,
     pub(crate) left_s: f64,
-    /// Bit mask of the memories that must be shown in the same frame as this memory. 0 if the memory is independent.
+    /// Bit mask of the memories that must be shown in the same frame as this memory. The mask is 0 if the memory is
+    /// independent.
     pub(crate) together: u8,
 }
 

@@ -124,8 +124,7 @@ impl World {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Returns the triangles of some segments. `place` is a function from a vertex to the position at which it is
-    /// drawn.
+    /// Returns the triangles of some segments. `place` returns the position at which a vertex is drawn.
     pub fn triangles<'a>(
         &'a self,
         segments: &'a [usize],

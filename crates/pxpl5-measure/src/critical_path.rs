@@ -1,8 +1,8 @@
 //! The chain of waits that ends with a picture on the screen.
 //!
 //! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. Each step leads from
-//! a piece of work to the earlier work whose end let it begin. Each instant of the latency belongs to one resource, so
-//! the shares add up to 1.
+//! a piece of work to the earlier work whose end allowed this piece to begin. Each instant of the latency belongs to
+//! one resource, so the shares add up to 1.
 
 use crate::resource::Resource;
 use crate::trail::{Step, Trail};
@@ -119,8 +119,8 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is printed by name if it causes at least this share of the wait for a resource. The value affects only the
-/// printed text.
+/// Least share of the wait for a resource at which the text names the board that causes the wait. The value affects
+/// only the printed text.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {

@@ -1,6 +1,6 @@
 //! Moves a picture with depth to another pose. The picture's pixels are a mesh, whose cells are drawn from the new pose.
 //!
-//! No crate for warping images is used. `imageproc` maps pictures by one homography, and knows neither depth nor the
+//! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
 
 use crate::reproject::direction;
@@ -178,15 +178,16 @@ impl Drawing<'_> {
 
     /// Returns the rows of the field whose pixels can lie in some rows of the moved field.
     ///
-    /// The sources of a target row lie between the rows that its ends have at the smallest and the largest depth. The
-    /// sources of points between these depths lie between these rows, because projections keep lines straight.
+    /// For both ends of a target row, the source rows at the smallest and at the largest depth are computed. The
+    /// sources of all points of the target row lie between these rows, because projections keep lines straight.
     fn source_rows(&self, now: &Pose, targets: &Range<u32>) -> Range<u32> {
         let all = 0..self.rows.count(self.picture.height());
         if *targets == all {
             return all;
         }
-        // The depths are those from the old pose. Those from the new pose differ by the step and the turn of the head. A
-        // turn by an angle changes the depth in a corner of the view by a factor of up to 1 + angle * (1 + tangent).
+        // The depths are seen from the old pose. Depths that are seen from the new pose differ by the step and the turn
+        // of the head. A turn by an angle changes the depth in a corner of the view by a factor of up to 1 + angle * (1
+        // + tangent).
         let step = now.position.distance(self.drawn_for.position);
         let tangent = self.view.centre_px().length() / self.view.focal_px();
         let factor = 1.0 + now.orientation.angle_between(self.drawn_for.orientation) * (1.0 + tangent);
@@ -334,7 +335,8 @@ impl Target {
 
 /// Returns the first whole number at or after a position, within two limits that are not negative.
 ///
-/// The function `ceil` of the standard library is a call on processors without SSE 4.1.
+/// The function `ceil` of the standard library is not used, because `ceil` is a function call on processors without SSE
+/// 4.1.
 #[inline]
 fn next(position: f32, least: f32, greatest: f32) -> i32 {
     let inside = if position > least { position } else { least };

@@ -72,7 +72,7 @@ pub struct PixelErrors {
     pub all_px: Vec<f64>,
 }
 
-/// Number of columns and rows of the grid. Odd, so that one pixel lies in the middle.
+/// Number of columns and rows of the grid. The number is odd, so that one pixel lies in the middle.
 const GRID: u32 = 5;
 
 /// Index of the pixel in the middle of the grid.

@@ -98,7 +98,7 @@ impl MemoryReport {
         // Mean number of periods between updates within the window.
         let period =
             outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
-        // The last update tells which structures the memory holds.
+        // The last update shows which structures the memory holds.
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {

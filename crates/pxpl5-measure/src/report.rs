@@ -28,7 +28,7 @@ pub struct Report {
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
-    /// Commit from which the program was built. `None` if the program does not know its commit.
+    /// Commit from which the program was built. `None` if the program did not state its commit.
     pub commit: Option<String>,
     /// Name of the machine's preset.
     pub machine: String,
@@ -48,8 +48,8 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// Warnings, such as parameters outside the range that the sources allow.
     pub warnings: Vec<String>,
-    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than the
-    /// pipeline drew.
+    /// Messages that each display could not use, with the first reason. If the list is not empty, the displays show
+    /// less than the pipeline drew.
     pub display_faults: Vec<String>,
     /// Number of graphics processors in the machine, including the master.
     pub n_gps: usize,

@@ -13,7 +13,8 @@ pub(crate) struct Screen {
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals of regions in one buffer, with one division of the screen into regions. Sorted by region and time.
+/// Arrivals of regions in one buffer, with one division of the screen into regions. The arrivals are sorted by region
+/// and time.
 #[derive(Debug)]
 struct Cut {
     /// Copy target of the first arrival. The region and the picture in this target are ignored.

@@ -189,8 +189,8 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// Returns the radius in pixels of the display's dead zone around the axis. In the dead zone, no slice can show any
 /// point of any scene.
 ///
-/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. It belongs to
-/// the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
+/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. The column
+/// belongs to the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
     let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();

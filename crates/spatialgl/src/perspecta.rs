@@ -9,9 +9,9 @@
 //! # Behaviour
 //!
 //! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the frame store that is not shown. A map makes all tiles dark that will not be sent. A swap
-//!   request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written slice
-//!   is therefore never shown.
+//!   ([`volume_messages`]) in the frame store that is not shown. A map makes those tiles dark that will not be sent. A
+//!   swap request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written
+//!   slice is therefore never shown.
 //! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_wire::display::Display), a period is a
 //!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
@@ -20,13 +20,13 @@
 //!
 //! # Numbers
 //!
-//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, it has assumed values with
-//! ranges. [`figures`] compares the paper's figures with this model.
+//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, the table has an assumed value
+//! with a range. [`figures`] compares the paper's figures with this model.
 //!
 //! # Not modelled
 //!
-//! Optics and keystone of the projector, the motor, the colours of its lamps, and the relay optics that turn with the
-//! screen. Pixels outside the screen's circle are as bright as pixels inside it.
+//! Optics and keystone of the projector, the motor, the colours of the projector's lamps, and the relay optics that
+//! turn with the screen. Pixels outside the screen's circle are as bright as pixels inside it.
 //!
 //! # Sources
 //!

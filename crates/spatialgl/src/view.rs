@@ -23,7 +23,7 @@ pub struct SliceView {
     pub(crate) window: [[f64; 4]; 4],
     /// Slightly enlarged range of s in which anything can be drawn, or `None` if the range is unknown.
     pub(crate) reach: Option<[f64; 2]>,
-    /// Number of samples along a side of a pixel. It exceeds 1 while a supersampled image is drawn.
+    /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
 }
 

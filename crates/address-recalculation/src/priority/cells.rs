@@ -172,7 +172,7 @@ impl Cells {
         self.drawn_from.get(memory).copied().flatten()
     }
 
-    /// Returns a distance in metres: how far the eye may move from the position of a memory's last update before the
+    /// Returns the distance, in metres, that the eye may move from the position of a memory's last update before the
     /// memory is due.
     ///
     /// If distances are measured to occupied cells, the result is infinite for a memory without occupied cells.

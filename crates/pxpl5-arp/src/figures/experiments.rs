@@ -215,8 +215,9 @@ pub struct SizeLimit {
 /// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
 /// sphere.
 ///
-/// The interpretations differ in the limited angle. The threshold limits the change of the diameter, or that of the
-/// radius, or twice the threshold limits that of the radius.
+/// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
+/// diameter covers. In the second, the threshold limits the change of the radius' angle. In the third, the limit of the
+/// radius' angle is twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];

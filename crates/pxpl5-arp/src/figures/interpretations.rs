@@ -84,7 +84,7 @@ impl Situation {
 /// Update rates of the memories for one side length of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Side of a cell in metres. It applies to the default threshold.
+    /// Side of a cell in metres, for the default threshold.
     pub cell_m: f64,
     /// Updates per second of display memories 0 to 3.
     pub rates_hz: [f64; 4],

@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the user's cell in memory 0.
     pub inner_rings: u64,
-    /// Ratio of the number of rings in a memory to that in the next faster memory.
+    /// Number of rings in a memory, divided by the number of rings in the next faster memory.
     pub ring_growth: u64,
     /// True if distances are measured to cells that hold segments. False if distances are measured to the border of a
     /// block of cells.

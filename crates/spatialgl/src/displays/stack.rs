@@ -31,8 +31,8 @@ impl PlaneStack {
     }
 }
 
-/// Returns the s at which slab `i` begins. It is exactly the end of the previous slab, so no point lies between two
-/// slabs.
+/// Returns the position along s at which slab `i` begins. The previous slab ends at exactly this position, so no point
+/// lies between two slabs.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }

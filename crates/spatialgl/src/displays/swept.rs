@@ -34,7 +34,7 @@ pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 pub struct SweptConfig {
     /// Number of slices per turn, even.
     pub slices: u32,
-    /// Width of an image in pixels, a multiple of 8. Half of it is the radius of the display.
+    /// Width of an image in pixels, a multiple of 8. Half of the width is the radius of the display.
     pub width: u32,
     pub height: u32,
     /// Angle of slice 0, radians.

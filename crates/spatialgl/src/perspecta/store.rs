@@ -7,7 +7,7 @@ use pxpl5_wire::{Word, read_swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice. Both stores share them until one store writes to them.
+/// The words of one slice. Both stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
 /// Two volumes of N slices.

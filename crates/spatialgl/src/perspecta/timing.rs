@@ -64,8 +64,8 @@ impl PerspectaConfig {
         Time((picoseconds / u128::from(self.slices * self.spin_rpm)) as u64)
     }
 
-    /// Returns the number of volumes per second that an eye sees. It is two per revolution, because the screen passes
-    /// every plane twice (D2).
+    /// Returns the number of volumes per second that an eye sees. There are two volumes per revolution, because the
+    /// screen passes every plane twice (D2).
     #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0

@@ -239,8 +239,8 @@ pub fn view_undithered(
     Ok(Some(light))
 }
 
-/// A function that receives the index of a slice and a callback. It calls the callback with column, row and levels of
-/// every lit pixel.
+/// A function that receives the index of a slice and a callback. The function calls the callback with column, row and
+/// levels of every lit pixel.
 type EachPixel<'a> = dyn Fn(u32, &mut dyn FnMut(u32, u32, [u64; 3])) + Sync + 'a;
 
 fn sum(

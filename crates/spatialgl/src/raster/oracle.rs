@@ -10,7 +10,8 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The reference model, without optimizations. It defines the voxels that every other renderer must draw.
+/// The reference model, without optimizations. The reference model defines the voxels that every other renderer must
+/// draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReferenceRenderer;
 
