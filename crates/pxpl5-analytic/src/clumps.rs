@@ -72,7 +72,7 @@ impl<const N: usize> MessageCosts<N> {
 }
 
 /// A clump of triangles, and its message to each region. The message selects the region and draws triangles. In the
-/// field's first clump it also clears the region.
+/// field's first clump, the message also clears the region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,

@@ -273,8 +273,8 @@ impl StereoModel {
 
     /// Computes RENDER and COPY of one eye.
     ///
-    /// Returns the time at which the master knows that the last commands were accepted. Also returns the times of the
-    /// copies' first and last word.
+    /// Returns the time at which the master is notified that the last commands were accepted. Also returns the times of
+    /// the copies' first and last word.
     fn render(
         &self,
         all: &mut Renderers,
@@ -353,8 +353,8 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word sent.
     ///
-    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. It releases that
-    /// word when the command with the word starts.
+    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. The FIFO releases
+    /// this word when the command that contains the word starts.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];

@@ -119,8 +119,8 @@ const COLUMNS: usize = REGIONS / 4;
 
 /// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
 ///
-/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received all
-/// reports of this and is free.
+/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received the
+/// reports of all other GPs about their last clumps, and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -158,7 +158,7 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
     /// the last word has entered the FIFO.
     ///
-    /// A word enters when the word that is one FIFO depth ahead of it has left. The words of a command leave when the
+    /// A word enters the FIFO when the word one FIFO depth before has left. The words of a command leave when the
     /// command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
@@ -414,7 +414,7 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first GP knows that all clumps have been accepted.
+    /// Returns the time at which the first GP has been notified that all clumps were accepted.
     ///
     /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {

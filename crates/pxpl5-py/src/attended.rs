@@ -42,8 +42,8 @@ impl Progress {
 /// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps. It
-/// is called at most twenty times a second, and once at the end.
+/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
+/// The callback is called at most twenty times a second, and once at the end.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
 /// work has stopped. If `waits` is false, the exception is raised at once, and the result of the work is discarded.

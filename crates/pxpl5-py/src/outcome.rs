@@ -22,7 +22,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Results of an experiment: the machine's record and the pictures that were shown.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Outcome {
-    /// Outcome of the run before the results are computed. `results` takes it out and leaves `None`.
+    /// Outcome of the run before the results are computed. `results` takes the outcome out and leaves `None`.
     outcome: Mutex<Option<pxpl5::Outcome>>,
     results: OnceLock<Results>,
     measures: Vec<Measure>,

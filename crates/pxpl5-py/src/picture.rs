@@ -76,8 +76,8 @@ impl Picture {
         self.pixels.bind(py).clone()
     }
 
-    /// Returns the pixels for ``numpy.asarray``. They are copied only if another element type is requested or ``copy``
-    /// is true.
+    /// Returns the pixels for ``numpy.asarray``. The pixels are copied only if another element type is requested or
+    /// ``copy`` is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,

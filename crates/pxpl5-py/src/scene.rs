@@ -155,8 +155,8 @@ impl Scene {
         table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))
     }
 
-    /// Returns a simplified scene with at most ``primitives`` triangles and spheres, 1 or more. Its shape stays
-    /// similar.
+    /// Returns a simplified scene with at most ``primitives`` triangles and spheres, 1 or more. The shape of the scene
+    /// stays similar.
     ///
     /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
     fn decimated(&self, py: Python<'_>, primitives: Count) -> PyResult<Self> {

@@ -50,7 +50,7 @@ impl Fraction {
 
 /// Returns the nearest fraction within the limit, by continued fractions.
 ///
-/// The result is the last convergent within the limit, or a fraction between it and the next convergent.
+/// The result is the last convergent within the limit, or a fraction between this convergent and the next.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };

@@ -15,7 +15,7 @@
 //! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
 //!   visual angle of this cell.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
-//!   for the pose of the eye one latency ago. It is shifted by the error of its middle.
+//!   for the pose of the eye one latency ago. This picture is then shifted by the error of its middle.
 //!
 //! # Not modelled
 //!

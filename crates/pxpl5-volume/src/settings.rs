@@ -55,7 +55,7 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Position of the viewer before the display. It has no influence on the volume.
+    /// Position of the viewer before the display. The position has no influence on the volume.
     pub viewer: ViewerNumbers,
 }
 

@@ -203,8 +203,8 @@ impl WebMachine {
     }
 
     /// Returns the six faces of a cube around the head that an eye's display memory holds. `eye` is 0 or 1. The faces
-    /// form a cross of 512 x 384 pixels. Without `memory` all memories are combined: each texel is the nearest one of
-    /// all. The result is empty for a display without such memories.
+    /// form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the nearest texel
+    /// of all memories. The result is empty for a display without such memories.
     #[must_use]
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
@@ -236,7 +236,8 @@ impl WebMachine {
     }
 
     /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in time
-    /// as JSON. The second number is null if the scene cannot be decimated. It can take some seconds.
+    /// as JSON. The second number is null if the scene cannot be decimated. The search for the second number can take
+    /// some seconds.
     #[must_use]
     pub fn fitting(&self) -> String {
         self.0.fitting().to_string()

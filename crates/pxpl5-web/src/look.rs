@@ -34,8 +34,8 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
 }
 
 /// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
-/// step leads to the begin of the period before. From within a period, it leads to the same place of the period before,
-/// or to time zero.
+/// step leads to the begin of the period before. From within a period, a step leads to the same place in the period
+/// before, or to time zero.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);

@@ -124,7 +124,7 @@ impl Session {
     /// Returns the number of primitives in the scene, and about the number that the pipeline shows in time, as JSON.
     ///
     /// The second number comes from the closed form of the pipeline. For a pipeline without a closed form, runs of
-    /// decimated scenes find the number by bisection. It is null if the scene cannot be decimated.
+    /// decimated scenes find the number by bisection. The second number is null if the scene cannot be decimated.
     pub(crate) fn fitting(&self) -> Value {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();

@@ -145,7 +145,7 @@ impl SliceEye {
     /// pixels, depth, w.
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
-    /// division by R and a multiplication by R, where R is the radius.
+    /// division by half the image's size and of a multiplication by the same number.
     #[must_use]
     pub fn window_rows(&self, size: Size, reach: f64) -> [[f64; 4]; 4] {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];

@@ -41,7 +41,8 @@ pub struct TimelineRow {
     pub bars: Vec<Bar>,
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
-    /// Pictures that the port of this row showed. Empty unless the row belongs to a port that swaps independently.
+    /// Pictures that the port of this row showed. The list is empty unless the row belongs to a port that swaps
+    /// independently.
     pub shown: Vec<ShownPicture>,
 }
 

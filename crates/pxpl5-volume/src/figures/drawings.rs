@@ -113,8 +113,8 @@ fn place(x: u32, y: u32) -> [f64; 3] {
     [(f64::from(x) + 0.5 - half) * scale, 0.0, (half - f64::from(y) - 0.5) * scale]
 }
 
-/// Draws the volume of slice 1, seen from above, bright and the volumes of its neighbours darker. Overlaps of enlarged
-/// volumes are white.
+/// Draws the volumes of three neighbouring slices, seen from above. The volume of slice 1 is bright, and the volumes of
+/// its neighbours are darker. Overlaps of enlarged volumes are white.
 fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     let display = few(clip)?;
     let views = display.views();

@@ -36,7 +36,7 @@ pub struct SliceBounds {
     pub copies: u64,
 }
 
-/// The time of each part for certain numbers of boards. Each is a lower bound of the time for a volume.
+/// The time of each part for certain numbers of boards. Each of these times is a lower bound of the time for a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
     /// Number of renderers that share the slices.

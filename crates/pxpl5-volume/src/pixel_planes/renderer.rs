@@ -16,10 +16,10 @@ use std::sync::{Mutex, PoisonError};
 /// The pixel array that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// The fast array. It computes whole values, only for the pixels that a command touches.
+    /// The fast array, which computes whole values, only for the pixels that a command touches.
     Lanes,
-    /// The reference model of the array. It executes one bit of one instruction at a time, and skips only steps that
-    /// cannot change a result.
+    /// The reference model of the array, which executes one bit of one instruction at a time. The model skips only
+    /// steps that cannot change a result.
     BitSerial,
 }
 
@@ -32,8 +32,8 @@ pub struct RendererWork {
     pub triangles: u64,
     /// Number of triangle commands. A triangle counts once for each region that it touches in a slice.
     pub commands: u64,
-    /// Number of omitted triangles. They have no area on the sub-pixel grid, or planes whose coefficients do not fit
-    /// the words.
+    /// Number of omitted triangles. A triangle is omitted if it has no area on the sub-pixel grid, or if the
+    /// coefficients of its planes do not fit the words.
     pub left_out: u64,
     /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
