@@ -44,7 +44,7 @@ pub enum StudyError {
     /// The settings have no head motion, so there is no error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
-    /// The query asks for a precision, but more seeds cannot move the head otherwise.
+    /// The query asks for a precision, but the head moves in the same way for every seed.
     #[error(
         "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
          use head.motion = synthetic or a longer recording, or compare without a precision"

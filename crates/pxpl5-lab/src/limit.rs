@@ -1,7 +1,7 @@
 //! Searches for limits: the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level). It
-//! only gives hints: the size at which the search starts, and sizes that may miss the goal.
+//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level).
+//! This formula only gives hints: the size at which the search starts, and sizes that may miss the goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints

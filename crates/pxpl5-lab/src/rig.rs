@@ -44,8 +44,8 @@ pub struct Rig {
     pub passes: usize,
 }
 
-/// Default number of low points to measure. They fall anywhere in a field. With this number, the mean wait for a
-/// retrace is known to a fifth of a field.
+/// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
+/// wait for a retrace is known to a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {

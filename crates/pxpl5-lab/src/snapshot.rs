@@ -1,14 +1,14 @@
 //! Saves and restores a run at the boundary between two display fields.
 //!
-//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. It does not hold the state of the boards, because
-//! their programs are suspended `async` functions, whose state cannot be serialized. Instead, the checkpoint holds the
-//! data that determine this state: the experiment, the identity of the scene, and the field. It also holds the trace hash
-//! and the number of events, which identify the state.
+//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. The checkpoint does not hold the state of the
+//! boards, because their programs are suspended `async` functions, whose state cannot be serialized. Instead, the
+//! checkpoint holds the data that determine this state: the experiment, the identity of the scene, and the field. The
+//! checkpoint also holds the trace hash and the number of events, which identify the state.
 //!
-//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. It then compares
-//! the hash and number of events with the saved ones, and continues the run. A restored run is therefore identical to
-//! the original run. Restoring takes as long as the original simulation up to that field (thousands of fields a second
-//! for small scenes).
+//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. The program
+//! then compares the hash and the number of events with the saved ones, and continues the run. A restored run is
+//! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
+//! (thousands of fields a second for small scenes).
 //!
 //! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 

@@ -73,7 +73,8 @@ pub struct Comparison {
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
-    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if it did not ask.
+    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if the query asked for no
+    /// precision.
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
     pub max_seeds: Option<usize>,

@@ -5,8 +5,8 @@
 //!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
 //! ```
 //!
-//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
-//! removed, and only its row is computed again.
+//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
+//! incomplete line is removed, and only the row of this line is computed again.
 
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;

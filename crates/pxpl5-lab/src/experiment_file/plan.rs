@@ -85,11 +85,11 @@ pub struct Plan {
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
-    /// Head with its tracker. `None` if the head moves as the scene says, without tracking delay.
+    /// Head with its tracker. `None` if the head follows the scene's own motion, without tracking delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display that the viewer wears.
     pub hmd: Hmd,
-    /// Choice of the pixels that are computed. By default only pixels that are read later.
+    /// Choice of the pixels that are computed. By default, only pixels that are read later are computed.
     pub pixels: Pixels,
     /// Quantities that tables and rows of results contain.
     pub measure: Vec<Measure>,

@@ -35,7 +35,7 @@ pub struct Bench {
     pub seeds: u64,
     /// Number of evaluated frames for each seed in the experiment of figure 7.
     pub frames: u64,
-    /// Interpretation of the papers: answers to the questions that they leave open about Rendering Control.
+    /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }

@@ -25,8 +25,8 @@ pub enum FieldCount {
     Whole,
 }
 
-/// An interpretation of the papers: one answer to each question that they leave open about the figures of Rendering
-/// Control.
+/// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
+/// Rendering Control.
 ///
 /// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with the
 /// same interpretation. No answer is chosen for a single figure.

@@ -35,7 +35,7 @@ const TIMED: u64 = 16;
 pub struct LevelQuery {
     /// Number of random experiments for which each level is compared with the cycle level.
     pub experiments: u64,
-    /// True if simulation speeds are measured as well. They are meaningful only on an otherwise idle computer.
+    /// True if simulation speeds are measured as well. Speeds are meaningful only on an otherwise idle computer.
     pub speeds: bool,
 }
 

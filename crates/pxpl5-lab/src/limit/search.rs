@@ -20,12 +20,12 @@ pub struct Limit {
     pub tried: usize,
 }
 
-/// Hints from another model, which reduce the number of trials. They do not change the result of any trial.
+/// Hints from another model, which reduce the number of trials. Hints do not change the result of any trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
     /// Number of triangles near the limit. Without this hint the search starts with one triangle.
     pub near: Option<u32>,
-    /// Numbers of triangles that may miss the goal although larger ones reach it. The search tries them too.
+    /// Numbers of triangles that may miss the goal although larger ones reach it. The search tries these numbers too.
     pub doubtful: Vec<u32>,
 }
 

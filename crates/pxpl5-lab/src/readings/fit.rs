@@ -27,7 +27,7 @@ pub struct FigureFit {
 /// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The interpretation of the papers: its answers to their open questions.
+    /// The interpretation of the papers: the answers to the papers' open questions.
     pub reading: Reading,
     /// The interpretation of the papers in words.
     pub words: String,
