@@ -156,7 +156,7 @@ impl BudgetArgs {
     /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
     /// is the cost of the fraction `part` of this part. The remaining fields are assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
-        // Short runs and small ones say too little about the rest.
+        // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > MIN_EXTRAPOLATED_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")

@@ -36,14 +36,15 @@ const MOST_TRIES: u32 = 100;
 enum Listing {
     /// The manifest does not list the written files, because they do not belong to its run.
     None,
-    /// The written files are all files of one run. They replace the files of the previous run in the folder.
+    /// The written files are all files of one run. These files replace the files of the previous run in the folder.
     Own(Manifest),
-    /// The written files derive from the results in the folder. If the folder has a manifest, they are added to it.
+    /// The written files derive from the results in the folder. If the folder has a manifest, the written files are
+    /// added to the manifest.
     Added(Manifest),
 }
 
 impl OutputFolder {
-    /// Returns an output folder for all files of one run. They replace all files of the previous run.
+    /// Returns an output folder for all files of one run. These files replace all files of the previous run.
     ///
     /// # Errors
     ///

@@ -16,7 +16,7 @@ pub(super) struct Batch {
     files: Vec<Staged>,
     /// Files of the previous run. They are deleted after all new files have their names.
     gone: Vec<PathBuf>,
-    /// Data for devices, pipes and standard output. Written last, because such a write cannot be undone.
+    /// Data for devices, pipes and standard output. These data are written last, because such a write cannot be undone.
     streams: Vec<(Target, Vec<u8>)>,
 }
 
