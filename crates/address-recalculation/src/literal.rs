@@ -98,8 +98,8 @@ impl ReferencePipeline {
 
     /// Simulates one clock. All pixels advance by one stage, and the pixel that leaves the last stage is returned.
     ///
-    /// `entering` is the new pixel with the orientation that was read for it. `memories` and `background` are the
-    /// buffers that are visible at this clock.
+    /// `entering` is the new pixel with the orientation that was read for this pixel. `memories` and `background` are
+    /// the buffers that are visible at this clock.
     pub fn clock(
         &mut self,
         entering: Option<([u32; 2], MatrixWords)>,

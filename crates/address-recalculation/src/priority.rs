@@ -33,8 +33,8 @@
 //! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the two
 //!   eye positions. The vertex then has the same direction and depth in both memories.
 //!
-//! Units are metres, seconds and radians unless a name says degrees. Axes are right-handed with y up. Results are
-//! bit-identical on every host.
+//! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
+//! are bit-identical on every host.
 //!
 //! # Not here
 //!

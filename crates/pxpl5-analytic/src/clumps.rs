@@ -6,8 +6,8 @@ use slats::CLUMP;
 
 /// Computes TRANSFORM and RENDER of all clumps of a field.
 ///
-/// Returns two times for the last clump: the time at which it was accepted, and the time at which the processor had
-/// handed it over for sending.
+/// Returns two times of the last clump: when the clump was accepted, and when the processor had handed the clump over
+/// for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],

@@ -67,7 +67,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// So many fields reach a steady state and show some views of a moving head.
+/// A run of this length reaches a steady state and shows some views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
 /// Estimates how many primitives the scene can have so that all pictures are in time. The scene is decimated to this

@@ -266,7 +266,7 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Returns the number of primitives of the slave that holds the most of them.
+    /// Returns the largest number of primitives that any slave holds: an equal share, rounded up.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }

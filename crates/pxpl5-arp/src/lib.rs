@@ -21,8 +21,8 @@
 //!   warping.
 //! - [`figures`] compares the papers' figures with the simulated ones. [`pictures`] draws pictures.
 //!
-//! Units are metres, seconds and radians unless a name says otherwise. A frame is 1/60 s. Results are bit-identical on
-//! every host.
+//! Units are metres, seconds and radians unless a name contains another unit. A frame is 1/60 s. Results are
+//! bit-identical on every host.
 //!
 //! # Not here
 //!

@@ -14,7 +14,7 @@ pub(crate) struct Job {
     pub(crate) together: u8,
 }
 
-/// Updates that are being drawn, and updates that wait for them.
+/// Updates that are being drawn, and updates that wait until these updates are finished.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,
@@ -26,8 +26,8 @@ impl Queue {
         Self { running: vec![None; memories], waiting: vec![None; memories] }
     }
 
-    /// Adds an update of a memory. The new update replaces an update that has not begun, or waits for one that has
-    /// begun.
+    /// Adds an update of a memory. If an update of this memory has begun, the new update waits for its end. Otherwise
+    /// the new update replaces the old one.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };

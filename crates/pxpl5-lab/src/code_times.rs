@@ -68,7 +68,7 @@ const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 /// Half the side of the square that a triangle covers at a distance of 1 m, in metres. The measurement of the clipper
 /// uses such triangles. The corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any
-/// size beyond the guard band would do.
+/// size beyond the guard band has the same effect.
 const CLIPPED_M: f32 = 2.0;
 
 /// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).

@@ -1,11 +1,11 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and light,
-//! and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not full,
-//! and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the line,
-//! so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the line
-//! when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when it detects the pendulum's low point. Frames alternate between dark and
+//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not
+//! full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the
+//! line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the
+//! line when it samples the pose of a frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
@@ -116,7 +116,7 @@ impl Rig {
     }
 }
 
-/// Returns an error for a pipeline in which a photodiode on the screen cannot tell when a frame appears.
+/// Returns an error for a pipeline in which a photodiode on the screen cannot detect the appearance of a frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -234,8 +234,8 @@ impl Photodiode {
     }
 
     /// Returns the sample of two periods ago, if no message has been on the ring since the beginning of that period.
-    /// The same line was lit then, and the screen of an idle machine does not change. (The ring is read one period
-    /// later than the screen.)
+    /// The display lit the same line in that period, and the screen of an idle machine does not change. The ring is
+    /// read one period later than the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;

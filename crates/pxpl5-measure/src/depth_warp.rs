@@ -347,8 +347,8 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
 
 /// Moves a whole picture from the pose for which it was drawn to another pose, by the depths of its pixels.
 ///
-/// Each pixel of the result is the nearest content that the picture has for it. Pixels without content are black: content
-/// beyond the edge of the picture, and content that nearer objects hid. Returns the result and the number of black pixels,
+/// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
+/// beyond the edge of the picture, or was hidden by nearer objects. Returns the result and the number of black pixels,
 /// or `None` if the picture, the depths and the view differ in size.
 #[must_use]
 pub fn reproject_with_depth(

@@ -67,8 +67,8 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the ranges of pixels in a row that have one pose: one range per region, or single pixels if each column
-    /// has its own pose.
+    /// Returns the ranges of pixels in a row that have one pose. A range covers a region, or a single pixel if each
+    /// column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
         let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };

@@ -46,7 +46,7 @@ pub struct Setup {
     pub list: Arc<DisplayList>,
     /// Function that returns the newest view: its transforms, and the edits of moving structures.
     pub views: Views,
-    /// Function that returns a view for a given display time, for firmware that knows when the view will be seen.
+    /// Function that returns a view for a given display time, for firmware that computes the display time of a view.
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
@@ -59,7 +59,7 @@ pub struct Setup {
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
     ///
-    /// Only firmware that knows the display time uses this setting.
+    /// Only firmware that computes the display times of its views uses this setting.
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
@@ -172,7 +172,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// Returns the number of display periods before `end` in which the display showed old cube faces in a new head
     /// direction.
     ///
-    /// Each such period counts as a picture, although the pipeline drew nothing for it.
+    /// Each such period counts as a picture, although the pipeline drew nothing for this period.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }
@@ -211,7 +211,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         1.0
     }
 
-    /// Returns true if the firmware itself knows when a view will be seen.
+    /// Returns true if the firmware itself computes the time at which a view will be seen.
     fn knows_when_seen(&self) -> bool {
         false
     }

@@ -138,7 +138,7 @@ impl FromStr for DisplayEntry {
     }
 }
 
-/// All known pipelines and displays.
+/// All registered pipelines and displays.
 #[derive(Clone, Debug)]
 pub struct Registry {
     pipelines: Vec<PipelineEntry>,

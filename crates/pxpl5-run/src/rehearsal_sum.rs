@@ -135,8 +135,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Finishes a view. Firmware that knows when views are seen needs no instants from the dry run. Such firmware may
-    /// show views out of the order of their numbers.
+    /// Finishes a view. Firmware that computes the display times of its views needs no instants from the dry run. Such
+    /// firmware may show views out of the order of their numbers.
     fn end_view(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = settled.aim.instant(&shown);

@@ -45,19 +45,20 @@ pub const MAX_FILE_BYTES: u64 = 256 << 20;
 /// Greatest memory that an importer may take for a model, as a multiple of the size of its file. Importers refuse
 /// models that need more.
 ///
-/// Assumed, 6.5 or more. A file that consists of triangles with two bytes per corner needs 6.5 times its size,
+/// Assumed, at least 6.5: a file that consists of triangles with two bytes per corner needs 6.5 times its size,
 /// including the file itself.
 pub const MEMORY_TIMES_FILE: u64 = 7;
 
 /// Number of bytes that an imported model may take in addition to [`MEMORY_TIMES_FILE`] times its file. Small files
-/// cannot exhaust the memory, so they need no strict limit. Assumed, any value.
+/// cannot exhaust the memory, so they need no strict limit. Assumed: any value is plausible.
 pub const MEMORY_FLOOR_BYTES: u64 = 4 << 20;
 
-/// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed, any value.
+/// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed: any value is
+/// plausible.
 pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 
-/// Largest N of the scenes `full-screen:N`, `typical:N` and `sphere:N`. Assumed, 12 (published in TR94) or more. The
-/// limit only prevents excessive use of memory.
+/// Largest N of the scenes `full-screen:N`, `typical:N` and `sphere:N`. Assumed: the value must be at least the
+/// published 12 (TR94), and only prevents excessive use of memory.
 pub const MAX_TRIANGLES: u32 = 1_000_000;
 
 /// Least N of the scene `sphere:N`. A sphere of 8 triangles is an octahedron.

@@ -73,7 +73,8 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. Assumed, any.
+    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. The direction
+    /// is assumed, and any direction would be plausible.
     #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
@@ -117,7 +118,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the contents and creates a scene of them.
+    /// Checks the given contents and creates a scene from these contents.
     ///
     /// # Errors
     ///

@@ -2,9 +2,9 @@
 //!
 //! An LED and a photodiode detect the low point of a pendulum's arc. A tracker on the pendulum sends reports to the
 //! host. When the host detects the low point in the reports, it starts a new frame and switches a D/A line. A
-//! photodiode on the screen sees frames that are alternately dark and light. On the oscilloscope, tracking latency is
-//! the time from the low point to the step of the D/A line. Rendering latency is the time from this step to the step of
-//! the screen.
+//! photodiode on the screen detects frames that are alternately dark and light. On the oscilloscope, tracking latency
+//! is the time from the low point to the step of the D/A line. Rendering latency is the time from this step to the step
+//! of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. It also has the host's
 //! detection of low points. The caller simulates the system and supplies the steps of the D/A line and the light on the
@@ -63,7 +63,7 @@ pub enum RigError {
     NoLight {
         /// Number of frames that the host requested.
         expected: usize,
-        /// Number of changes between dark and light that the photodiode on the screen saw.
+        /// Number of changes between dark and light that the photodiode on the screen detected.
         found: usize,
     },
 }

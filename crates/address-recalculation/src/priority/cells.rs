@@ -87,7 +87,8 @@ impl CellAssignment {
 
     /// Returns the distance, in metres, between a position and the border at which memory k begins.
     ///
-    /// The distance is 0 on the border and outside of it. For memory 0, which begins at the eye, it is always 0.
+    /// The distance is 0 on the border and outside of the border. For memory 0, which begins at the eye, the distance
+    /// is always 0.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }

@@ -81,8 +81,9 @@ impl BlockBootstrap {
     /// The ends are percentiles of the resampled means, with two corrections:
     ///
     /// - Values at the ends of the series are in fewer blocks than the others. The percentiles are therefore moved to
-    ///   the given mean: by a factor if the mean is positive and all resampled means are at least 0, else by a
-    ///   difference. The interval of a quantity that is never negative has no negative end.
+    ///   the given mean. If the mean is positive and all resampled means are at least 0, they are multiplied by a
+    ///   factor; otherwise a difference is added. The interval of a quantity that is never negative has no negative
+    ///   end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of the ends is
     ///   therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees of freedom to the
     ///   normal distribution. The second is the root of k / (k - 1).

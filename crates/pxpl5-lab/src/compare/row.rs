@@ -276,8 +276,8 @@ impl ErrorSpread {
         spread
     }
 
-    /// Replaces the interval of the mean by that of a bootstrap over the fields. The interval has no ends if the run is
-    /// too short for a bootstrap.
+    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. The interval has no ends if
+    /// the run is too short for a bootstrap.
     fn bootstrap_over_time(&mut self, judged: &[&Trial], confidence: f64) {
         let mean = self.mean_px.mean;
         let bootstrap = BlockBootstrap::of(&mean_of_fields(judged));

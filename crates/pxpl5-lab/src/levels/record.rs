@@ -50,7 +50,7 @@ pub struct LevelSpeed {
     pub simulated_seconds_per_second: Option<f64>,
 }
 
-/// Median of a set of values, and the interval that contains 90 % of them.
+/// Median of a set of values, and the interval that contains the middle 90 % of the values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Median of the values.

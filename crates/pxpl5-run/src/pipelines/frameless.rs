@@ -92,8 +92,8 @@ impl Default for Frameless {
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
-/// Number of blocks in a batch if i860 code runs (assumed; see pphigs, kernels/order_rules.md). A fixed number is used,
-/// because the time of the code is unknown in advance.
+/// Number of blocks in a batch if i860 code runs (assumed; see kernels/order_rules.md in the crate pphigs). A fixed
+/// number is used, because the time of the code is unknown in advance.
 const BATCH_OF_CODE: u32 = 16;
 
 /// Returns the first time after an instant at which the display's beam reaches a region.

@@ -493,7 +493,7 @@ fn message(error: &ParseError) -> String {
 }
 
 /// Returns the least size of an element's row in bytes. It is at least one, even for rows without properties. Otherwise
-/// a header could announce any number of them.
+/// a header could announce any number of such rows.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
         // In ASCII a number takes at least a digit and a space or line end.

@@ -19,8 +19,8 @@ pub struct Bar {
     /// True for the bottom half of a picture whose halves are copied separately, false for the top half. `None` for a
     /// whole picture.
     pub bottom: Option<bool>,
-    /// First line of the surface that the work of this bar fills, such as the first line of a bottom half. 0 for work that
-    /// fills no lines.
+    /// First line that the work of this bar fills on the surface, for example the first line of a bottom half. The
+    /// value is 0 for work that fills no lines.
     pub first_line: u32,
     /// Time at which the first board began this work.
     pub begin: Time,

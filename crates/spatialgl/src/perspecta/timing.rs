@@ -44,7 +44,7 @@ impl PerspectaConfig {
     /// per minute.
     ///
     /// # Panics
-    /// Never after [`Self::check`].
+    /// The function never panics after a successful [`Self::check`].
     #[must_use]
     pub fn revolution(&self) -> Clock {
         Clock::new(60_000_000_000_000, self.spin_rpm).expect("at most a million revolutions a minute")

@@ -25,11 +25,11 @@ pub struct InsidePass {
 /// One pass of the pendulum through its low point, measured on the oscilloscope without any time stamp of the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// Instant at which the photodiode sees the pendulum at its low point, ps.
+    /// Instant at which the photodiode detects the pendulum at its low point, ps.
     pub low_point_ps: u64,
     /// Instant at which the host switches the D/A line because it has detected the low point, ps.
     pub dac_ps: u64,
-    /// Instant at which the photodiode on the screen sees the frame that the low point requested, ps.
+    /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
     pub light_ps: u64,
 }
 
@@ -69,11 +69,11 @@ impl Latency {
 /// ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Latency from the pendulum's motion to the start of a frame. Measured outside, it begins at the low point.
-    /// Measured inside, it begins at the report's time stamp.
+    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
+    /// inside latency begins at the report's time stamp.
     pub tracking: Latency,
-    /// Latency from the start of a frame to its display. Measured outside, it ends when the photodiode sees the frame.
-    /// Measured inside, it ends when the pipeline counts the frame as shown.
+    /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
+    /// frame. The inside latency ends when the pipeline counts the frame as shown.
     pub rendering: Latency,
     /// Sum of tracking and rendering latency of each pass, from the motion to the display.
     pub total: Latency,
