@@ -8,7 +8,7 @@ use crate::timing::ArpTiming;
 pub(crate) struct FaceHit {
     /// The face that the direction hits.
     pub(crate) face: CubeFace,
-    /// Component of the direction along the forward axis of the face. It is greater than zero.
+    /// Component of the direction along the forward axis of the face. The component is greater than zero.
     pub(crate) forward: i64,
     /// Component of the direction to the right. Its magnitude is at most `forward`.
     pub(crate) right: i64,

@@ -24,7 +24,7 @@ type Each<T> = [T; BATCH];
 pub(crate) struct Batch {
     /// Number of pixels in the group.
     pub(crate) count: usize,
-    /// Index of the upper left texel of each pixel. It is 0 for a footprint with texels on other faces.
+    /// Index of the upper left texel of each pixel. The index is 0 for a footprint with texels on other faces.
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,

@@ -47,8 +47,8 @@ impl EyeBoards {
     }
 }
 
-/// An address recalculation pipeline with its display memories, for one or two eyes. It computes the texel of each
-/// pixel at scan-out.
+/// An address recalculation pipeline with its display memories, for one or two eyes. The pipeline computes the texel of
+/// each pixel at scan-out.
 #[derive(Debug)]
 pub struct AddressRecalculationPipeline {
     optics: Optics,

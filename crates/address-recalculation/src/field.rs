@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
-    /// Table of viewing vectors, one for each pixel. It is computed when a field is first read.
+    /// Table of viewing vectors, one for each pixel. The table is computed when a field is first read.
     pub(crate) table: OnceLock<LensTable>,
     pub(crate) scan: Scan,
 }

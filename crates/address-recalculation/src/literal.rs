@@ -145,7 +145,7 @@ impl ReferencePipeline {
         }
     }
 
-    /// Returns the number of bits in a sum of three products. It is one more than in a product.
+    /// Returns the number of bits in a sum of three products: one more than the bits of a product.
     const fn sum_bits(&self) -> u64 {
         self.vector_bits + self.matrix_bits + 1
     }

@@ -94,7 +94,7 @@ struct Buffer {
 struct SwapRequest {
     asked_at: Time,
     buffer: u8,
-    /// Bit mask of the memories that must swap at the same retrace. It is 0 if this memory swaps alone.
+    /// Bit mask of the memories that must swap at the same retrace. The mask is 0 if this memory swaps alone.
     together: u8,
 }
 

@@ -70,8 +70,8 @@ impl Orientation {
         self.rows.map(|row| dot(row, vector))
     }
 
-    /// Returns the nine words of the matrix register. They are signed and have `matrix_bits` bits. The largest word
-    /// represents 1, and halves are rounded to even.
+    /// Returns the nine words of the matrix register. The words are signed and have `matrix_bits` bits. The largest
+    /// word represents 1, and halves are rounded to even.
     #[must_use]
     pub fn words(&self, matrix_bits: u64) -> MatrixWords {
         MatrixWords(self.rows.map(|row| row.map(|component| signed_word(component, matrix_bits))))

@@ -1,13 +1,13 @@
-//! The analytic level of the model. It computes the times of Slats and of Rendering Control by formulas, without
-//! simulation. Such a *closed form* is a recurrence over clumps, regions and pictures.
+//! The analytic level of the model. This crate computes the times of Slats and of Rendering Control by formulas,
+//! without simulation. Such a *closed form* is a recurrence over clumps, regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. They take a few hundred additions and maxima for each
-//! configuration, so a sweep over many thousand configurations takes seconds. They follow these rules of the boards:
+//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
+//! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
 //! - A renderer executes commands in order. While it copies a region, it executes no other command.

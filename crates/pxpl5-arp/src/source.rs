@@ -1,4 +1,4 @@
-//! A renderer of limited speed. It draws memories in ascending order and shows only complete updates.
+//! A renderer of limited speed, which draws memories in ascending order and shows only complete updates.
 
 use crate::content::Content;
 

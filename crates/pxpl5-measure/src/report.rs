@@ -73,8 +73,8 @@ pub struct Report {
     pub latency_fields: DefinedStatistics,
     /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
-    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose until the picture is
-    /// lit.
+    /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
+    /// is lit.
     pub latency_parts_ms: Vec<LatencyPartStatistics>,
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.

@@ -82,8 +82,8 @@ impl Experiment {
         Ok(hash)
     }
 
-    /// Returns warnings about results that no source supports. They concern parameters outside their plausible range,
-    /// and work at the cycle level that no code executes.
+    /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
+    /// range, and work at the cycle level that no code executes.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }

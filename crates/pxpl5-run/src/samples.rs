@@ -12,7 +12,7 @@ pub const KEPT_SAMPLES: usize = 65_536;
 ///
 /// Up to the limit, all numbers are kept, and the statistics equal those of [`Statistics::of`] bit for bit. Beyond the
 /// limit, only the first numbers are kept. The statistics are then computed from sums with twice the precision of
-/// `f64`. They differ from the exact statistics at most in the last digits.
+/// `f64`. The results differ from the exact statistics at most in the last digits.
 ///
 /// As a slice, the collection contains the kept numbers.
 #[derive(Clone, Debug, PartialEq)]

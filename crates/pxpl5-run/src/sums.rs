@@ -1,4 +1,4 @@
-//! Streaming observers. They process the records of a run during the run, so that old records can be discarded.
+//! Streaming observers, which process the records of a run during the run, so that old records can be discarded.
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
@@ -74,8 +74,8 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. It must store the data that it needs later, because the run
-/// discards old records.
+/// The observer receives every record once, in order. The observer must store the data that it needs later, because the
+/// run discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, settled: &FinalResults<'_>);

@@ -3,16 +3,18 @@
 //! The shapes of the built-in models are geometry rather than parameters, and are defined in the files of
 //! [`crate::builtin`].
 
-/// Radius to which most built-in models are scaled, metres. It is measured from the centre of the model's bounding box.
+/// Radius to which most built-in models are scaled, metres. The radius is measured from the centre of the model's
+/// bounding box.
 ///
 /// Assumed, 0.1 to 1: the size of a ball held at arm's length. Half a walk around this model in a few seconds gives the
 /// published mean speed of a head, 0.37 m/s.
 pub const FIT_RADIUS_M: f64 = 0.25;
 
-/// Radius to which an imported model is scaled, metres. It is measured from the centre of the model's bounding box.
+/// Radius to which an imported model is scaled, metres. The radius is measured from the centre of the model's bounding
+/// box.
 ///
-/// Derived: the head keeps the distance that it has from the built-in models, [`FIT_RADIUS_M`] times
-/// [`FIT_DISTANCE_RADII`] = 0.65 m. Divided by [`WHOLE_DISTANCE_RADII`] this gives the radius.
+/// Derived: the head has the same distance from an imported model as from a built-in model, [`FIT_RADIUS_M`] times
+/// [`FIT_DISTANCE_RADII`] = 0.65 m. The radius is this distance divided by [`WHOLE_DISTANCE_RADII`].
 pub const IMPORT_RADIUS_M: f64 = 0.148;
 
 /// Distance of the eye from the centre of a model that must always be visible as a whole, as a multiple of the model's

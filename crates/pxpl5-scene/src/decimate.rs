@@ -50,7 +50,8 @@ impl Scene {
     }
 }
 
-/// Returns true if item `index` of `all` items is among the `kept` ones. The kept items are spread evenly.
+/// Returns true if the item with this index is kept, when `kept` of `all` items are kept. The kept items are spread
+/// evenly.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }

@@ -155,9 +155,9 @@ fn read_placed(
 /// triangles, weighted by area. In OBJ files the mean covers only triangles of the same smoothing group, and faces
 /// without a smoothing group are flat.
 ///
-/// The model is moved so that the centre of its bounding box is the origin. It is scaled so that its farthest point is
-/// [`crate::config::IMPORT_RADIUS_M`] from the origin. Both eyes then see the whole model under [`Scene::motion`],
-/// whatever the units of the file. The axes stay the same: +y is up, and +z faces the viewer.
+/// The model is moved so that the centre of its bounding box is the origin. The model is scaled so that its farthest
+/// point is [`crate::config::IMPORT_RADIUS_M`] from the origin. Both eyes then see the whole model under
+/// [`Scene::motion`], whatever the units of the file. The axes stay the same: +y is up, and +z faces the viewer.
 ///
 /// # Errors
 ///

@@ -138,8 +138,8 @@ impl Scene {
         self
     }
 
-    /// Returns warnings about the file from which the scene was read, one sentence each. They concern content that may
-    /// have been misinterpreted. The list is empty for a scene without a file.
+    /// Returns warnings about the file from which the scene was read, one sentence each. The warnings concern content
+    /// that may have been misinterpreted. The list is empty for a scene without a file.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
@@ -221,8 +221,8 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. It serves
-    /// code that has no model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. The copy
+    /// serves code that has no model matrices.
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.

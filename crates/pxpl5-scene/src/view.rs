@@ -1,4 +1,4 @@
-//! The head-mounted display. It converts the pose of a head into the matrices of its two eyes.
+//! The head-mounted display, which converts the pose of a head into the matrices of its two eyes.
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use serde::{Deserialize, Serialize};
@@ -28,8 +28,8 @@ pub struct View {
     /// Matrix from world to eye coordinates, which only rotates and moves. Eye coordinates are right-handed with +y up,
     /// and the eye looks along -z.
     pub world_to_eye: Mat4,
-    /// Matrix from head to eye coordinates, which only rotates and moves. It is used for structures that are fixed to
-    /// the head.
+    /// Matrix from head to eye coordinates, which only rotates and moves. The matrix serves structures that are fixed
+    /// to the head.
     pub head_to_eye: Mat4,
     /// Matrix from eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w. The depth z/w grows
     /// from 0 at the near plane to 1 at the far plane.

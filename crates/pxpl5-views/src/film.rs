@@ -22,7 +22,7 @@ pub enum FilmSurfaces {
     All,
 }
 
-/// A film of an experiment. It has one frame per display period, which shows the screen at the end of the period.
+/// A film of an experiment. The film has one frame per display period, which shows the screen at the end of the period.
 ///
 /// With an NTSC display, a frame combines the lines of the current field with the lines of the previous field.
 #[derive(Clone, Debug)]

@@ -1,4 +1,5 @@
-//! Comparison of all clips and projections for one scene. It includes methods that the paper rejects as too expensive.
+//! Comparison of all clips and projections for one scene. The comparison includes methods that the paper rejects as too
+//! expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::error::VolumeError;
@@ -244,7 +245,7 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns five views with the hyperbolic clip side by side. They are orthographic with 1 sample, jittered,
+    /// Returns five views with the hyperbolic clip side by side. The views are orthographic with 1 sample, jittered,
     /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
     /// pictures.
     #[must_use]

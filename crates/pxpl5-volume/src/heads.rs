@@ -36,7 +36,8 @@ use tracking::Pose;
 use tracking::motion::Motion;
 use tracking::view::HmdView;
 
-/// Number of scene vertices at which errors are evaluated. It is assumed that more points would not change the mean.
+/// Number of scene vertices at which errors are evaluated. The number is assumed to be large enough: more points would
+/// not change the mean.
 pub const POINTS: usize = 512;
 
 /// Picoseconds in a second.

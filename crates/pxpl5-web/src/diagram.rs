@@ -82,7 +82,7 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
 }
 
 /// Returns the age of the shown picture in milliseconds: the time since its head pose was sampled. The result is `null`
-/// before the first picture. It is also `null` for a pipeline whose picture combines several samples.
+/// before the first picture. The result is also `null` for a pipeline whose picture combines several samples.
 ///
 /// The field that the beam draws now is not yet evaluated. A picture in this field counts as shown if it is complete.
 /// An incomplete picture counts as shown only if the previous picture was shown, and if the missing regions can still

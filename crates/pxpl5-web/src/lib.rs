@@ -188,8 +188,8 @@ impl WebMachine {
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
-    /// percentage of pixels that differ. It also has the mean over all pixels of the largest difference of any colour,
-    /// in per cent. The result is `null` without an ideal picture.
+    /// percentage of pixels that differ. The object also has the mean over all pixels of the largest difference of any
+    /// colour, in per cent. The result is `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())

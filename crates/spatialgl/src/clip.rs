@@ -35,11 +35,11 @@ pub enum SliceClip {
     ),
 }
 
-/// Offset of the parallel and the tapered clip, in pixels. It is assumed, 0 to 2. With half a pixel, no slab is thinner
-/// than one pixel.
+/// Offset of the parallel and the tapered clip, in pixels. The offset is assumed (0 to 2). With half a pixel, no slab
+/// is thinner than one pixel.
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
-/// Bias of the hyperbolic clip, in square pixels. It is assumed, 0 to 4, as the square of [`DEFAULT_OFFSET_PX`].
+/// Bias of the hyperbolic clip, in square pixels. The bias is assumed (0 to 4) as the square of [`DEFAULT_OFFSET_PX`].
 pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 
 /// Half of the wedge that one slice represents: sine, cosine and tangent of d/2, where d is the angle between slices.

@@ -1,4 +1,5 @@
-//! Random numbers as pure functions of (seed, index). They can be drawn in any order and are the same on every host.
+//! Random numbers as pure functions of (seed, index). The numbers can be drawn in any order and are the same on every
+//! host.
 //!
 //! The generator is SplitMix64 (Steele, Lea and Flood 2014). Its step is [`pxpl5_sim::mix`] of the simulation kernel.
 

@@ -32,7 +32,7 @@ pub struct Segmentation {
     /// Origin of each vertex that a cut has created, in the same order. The origin serves to interpolate colours and
     /// normals.
     pub cuts: Vec<CutVertex>,
-    /// The triangles in each cell. They have the orientation of the original triangles.
+    /// The triangles in each cell, with the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,
 }
 

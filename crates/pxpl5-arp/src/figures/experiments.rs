@@ -1,4 +1,4 @@
-//! The experiments E2 to E9 with an ideal renderer. They are run once for all rows of the comparison.
+//! The experiments E2 to E9 with an ideal renderer. The experiments are run once for all rows of the comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;

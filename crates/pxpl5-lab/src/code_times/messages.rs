@@ -134,9 +134,9 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// Executes the messages of one display field on a board under Slats. The board receives the head pose. It then sends a
-/// chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two chains of
-/// copy commands to all renderers.
+/// Executes the messages of one display field on a board under Slats. The board receives the head pose. The board then
+/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two
+/// chains of copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

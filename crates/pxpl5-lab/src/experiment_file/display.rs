@@ -12,7 +12,8 @@ pub(super) const NUMBERS: &str = "display.";
 /// Name of the preset that display parameters change if the file names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. It has one name in the file and one in the display's table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file and another name in the display's
+/// table of parameters.
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,

@@ -1,5 +1,5 @@
-//! Figures of just-in-time pixels (Mine and Bishop). They concern errors while the head turns, the duration of a line,
-//! the number of transforms, and the pictures of an edge.
+//! Figures of just-in-time pixels (Mine and Bishop). The figures concern errors while the head turns, the duration of a
+//! line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -29,7 +29,7 @@ const PAN: f64 = 200.0;
 /// Horizontal resolution of the paper's picture in pixels per degree.
 const PX_PER_DEG: f64 = 10.0;
 
-/// Number of the field that is evaluated. It is even, and long after the start.
+/// Number of the field that is evaluated. The number is even, and the field is long after the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
 /// Number of the evaluated column in the 640 x 480 picture.

@@ -40,8 +40,8 @@ pub struct Fit {
     /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant. See
     /// [`FigureFit::log_likelihood`].
     pub log_likelihood: f64,
-    /// Numbers of the figures that the interpretation does not explain. Their error exceeds 8 %, or their standard
-    /// deviation differs by more than a quarter.
+    /// Numbers of the figures that the interpretation does not explain. The error of such a figure exceeds 8 %, or its
+    /// standard deviation differs by more than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 

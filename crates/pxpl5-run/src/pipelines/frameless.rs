@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
 
-/// The pipeline of frameless rendering. It draws blocks of the frame in a random order, each block once per pass.
+/// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
 ///
 /// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
 /// single pixels, but a message with a single pixel would take 17 words on the ring.

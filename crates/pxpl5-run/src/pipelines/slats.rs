@@ -24,7 +24,7 @@ pub enum Code {
     Of1994,
     /// Code of 1995 (I3D95).
     Of1995,
-    /// Code that fits in the instruction cache. It takes a third of the time of the 1994 code (I3D95).
+    /// Code that fits in the instruction cache and takes a third of the time of the 1994 code (I3D95).
     Optimised,
 }
 

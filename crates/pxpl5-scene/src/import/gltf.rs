@@ -25,8 +25,9 @@ use super::model::{Model, Places, counted, direction, push_with_slow_growth};
 use crate::config::{DEFAULT_COLOUR, MAX_COORDINATE};
 use crate::error::LoadError;
 
-/// Extensions that a file may require although the importer does not read them. They change only materials, textures
-/// and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can read.
+/// Extensions that a file may require although the importer does not read them. All but one of these extensions change
+/// only materials, textures and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can
+/// read.
 const HARMLESS: [&str; 6] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",

@@ -124,8 +124,8 @@ pub(super) fn seen_by(
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
-/// A transformation that fits a model into the default view. It moves the model's centre to the origin and scales its
-/// radius to [`IMPORT_RADIUS_M`].
+/// A transformation that fits a model into the default view. The transformation moves the model's centre to the origin
+/// and scales the model's radius to [`IMPORT_RADIUS_M`].
 pub(crate) struct Fit {
     centre: DVec3,
     pub(crate) scale: f64,

@@ -45,7 +45,8 @@ struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
-    /// Largest component of any colour in the file. It shows whether colours are fractions up to 1 or bytes up to 255.
+    /// Largest component of any colour in the file. The value shows whether colours are fractions up to 1 or bytes up
+    /// to 255.
     brightest: f64,
     has_materials: bool,
 }

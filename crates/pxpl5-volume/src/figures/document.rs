@@ -6,8 +6,8 @@ use crate::settings::VolumeSettings;
 use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
-/// Returns the text of docs/volumetric.md. It has every figure, the definitions, the statements without numbers, the
-/// scenes, and our own numbers with their ranges.
+/// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
+/// the scenes, and our own numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();

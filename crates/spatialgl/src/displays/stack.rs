@@ -17,7 +17,8 @@ pub struct PlaneStack {
 }
 
 impl PlaneStack {
-    /// Creates a stack of `planes` planes. They divide a range of z around 0, `depth` pixels long, into equal slabs.
+    /// Creates a stack of `planes` planes. The planes divide a range of z around 0, `depth` pixels long, into equal
+    /// slabs.
     ///
     /// # Errors
     ///

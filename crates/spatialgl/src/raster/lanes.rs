@@ -1,8 +1,8 @@
-//! The inner loops of the fast rasterizer, in plain Rust. They process eight pixels of a row at a time.
+//! The inner loops of the fast rasterizer, in plain Rust. The loops process eight pixels of a row at a time.
 //!
 //! Each of the eight lanes computes the same as the reference model for one pixel, with the same operations in the same
-//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. They
-//! also omit sums whose terms all have the same sign.
+//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. The
+//! loops also omit sums whose terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
 use crate::command::Combine;

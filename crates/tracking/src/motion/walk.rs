@@ -18,8 +18,8 @@ const AHEAD_M: f64 = 1.5;
 /// inaccurate.
 const LEAST_LEG_M: f64 = 1e-3;
 
-/// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. It looks at a
-/// point of the path ahead. After [`Self::with_glances`] it also looks around.
+/// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
+/// at a point of the path ahead. After [`Self::with_glances`] it also looks around.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,

@@ -187,8 +187,8 @@ impl Measurement {
 /// The traces of an oscilloscope with three channels: the pendulum's low point, the D/A line and the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Trace of the photodiode at the low point. It has one pulse for each pass of the pendulum, centred on the instant
-    /// of the low point.
+    /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
+    /// instant of the low point.
     pub low_point: ScopeTrace,
     /// Trace of the D/A line, with one step for each frame that a low point requested.
     pub dac: ScopeTrace,

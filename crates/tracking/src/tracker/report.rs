@@ -8,8 +8,8 @@ pub struct TrackerReport {
     pub solution: u64,
     /// Instant at which the measured orientation was true, ps.
     pub measured_ps: u64,
-    /// Instant at which the measured position was true, ps. It differs from `measured_ps` only for the Flock of Birds,
-    /// whose position is older than its orientation.
+    /// Instant at which the measured position was true, ps. The instant differs from `measured_ps` only for the Flock
+    /// of Birds, whose position is older than its orientation.
     pub position_measured_ps: u64,
     /// Instant at which the host receives the report, ps.
     pub arrives_ps: u64,

@@ -35,7 +35,7 @@ use std::sync::Arc;
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
     PixelPlanes,
-    /// An ideal renderer without delay. It draws from the eye position that is known at each retrace.
+    /// An ideal renderer without delay. This renderer draws from the eye position that is available at each retrace.
     ///
     /// Errors that remain with this renderer are not caused by drawing time.
     Ideal,
