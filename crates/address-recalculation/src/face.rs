@@ -84,7 +84,7 @@ impl CubeFace {
     }
 }
 
-/// Returns the index of the longest of three lengths. If several are equal, returns the first one.
+/// Returns the index of the longest of three lengths. Of several equal lengths, the first counts as the longest.
 pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     if x >= y && x >= z {
         0

@@ -57,8 +57,8 @@
 //! | instant | time |
 //! |---|---|
 //! | a pixel is displayed | as in the NTSC frame buffer |
-//! | its texels are read | 2 + ceil(log2 n) stages before, n memories |
-//! | its orientation is read (latched) | 8 + 16 + ceil(log2 n) stages before it, its line's or its field's first pixel: 650 ns for n = 4 |
+//! | its texels are read | 2 + ceil(log2 n) stages before its display, for n memories |
+//! | its orientation is read (latched) | 8 + 16 + ceil(log2 n) stages before the display of the pixel, or of the first pixel of its line or field: 650 ns for n = 4 |
 //!
 //! # Reference model and fast model
 //!

@@ -194,7 +194,7 @@ impl ReferencePipeline {
     }
 
     /// Multiplies the quotients by the size of the face. The bits above the binary point select the texel. The bits
-    /// below it are the fractions.
+    /// below this point are the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
         // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.

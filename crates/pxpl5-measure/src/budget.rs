@@ -92,7 +92,7 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast one.
+/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast memory.
 const OLDER_POSES: usize = 64;
 
 /// Sampled views by their numbers.

@@ -31,7 +31,7 @@ pub struct PathPart {
 /// The chain of waits of the last complete pictures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
-    /// Number of pictures that were followed: the last complete ones of the result window, at most
+    /// Number of pictures that were followed: the last complete pictures of the result window, at most
     /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
     /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
@@ -97,7 +97,7 @@ impl CriticalPath {
     }
 }
 
-/// Sums the steps of all chains that wait for one resource. Returns `None` if there are none.
+/// Sums the steps of all chains that wait for one resource. Returns `None` if no step waits for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();

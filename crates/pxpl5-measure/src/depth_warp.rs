@@ -39,8 +39,9 @@ impl DepthPicture {
     }
 }
 
-/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the picture has a
-/// gap behind which content is hidden. Assumed, 1.02 to 1.2: a floor that is seen under 5 degrees changes by 1.03.
+/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the picture has
+/// a gap behind which content is hidden. Assumed, 1.02 to 1.2: the depth of a floor that is seen at a grazing angle of
+/// 5 degrees changes by a factor of 1.03.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that the
@@ -233,7 +234,7 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells between two rows of the picture, of which `upper_row` is the upper one.
+    /// Draws the cells between the row `upper_row` of the picture and the next lower row.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -267,7 +268,8 @@ impl Target {
         }
     }
 
-    /// Draws a pixel that a cell covers. The content of the nearest corner is what a device without filters shows.
+    /// Draws a pixel that a cell covers. The pixel gets the content of the nearest corner, as in a device without
+    /// filters.
     #[inline]
     fn draw_covered(&mut self, [column, row]: [i32; 2], [above, below]: [&SeenRow; 2], x: usize, first: u32) {
         let [at_column, at_row] = [column as f32, row as f32];
@@ -287,7 +289,7 @@ impl Target {
         }
     }
 
-    /// Draws the pixel in which a pixel of the picture has its middle.
+    /// Draws the pixel that is nearest to the new position of a pixel of the picture.
     fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {
             return;

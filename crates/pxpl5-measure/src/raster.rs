@@ -46,8 +46,8 @@ impl<'a> Vdrt<'a> {
     }
 }
 
-/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports known at the
-/// field's start.
+/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports that have arrived
+/// at the field's start.
 pub(crate) fn offset(
     estimator: &mut Estimator,
     display: &dyn Display,

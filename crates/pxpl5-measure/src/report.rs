@@ -83,7 +83,8 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
-    /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
+    /// Number of complete new pictures per second within the result window. `None` if fewer than two pictures were
+    /// shown.
     pub updates_hz: Option<f64>,
     /// Number of pictures due in the result window, by result. `None` if no picture was due.
     pub due: Option<DuePictures>,

@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Contents of a run's first surface over time. Only arrivals that were added and not discarded are known.
+/// Contents of a run's first surface over time. The contents cover only arrivals that were added and not discarded.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,

@@ -115,7 +115,7 @@ fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns a predictor like that of the run, which receives the reports of another tracker instead.
+/// Returns a predictor with the settings of the run's predictor, which receives the reports of another tracker.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);

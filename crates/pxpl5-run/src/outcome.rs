@@ -95,7 +95,7 @@ impl Outcome {
     /// Returns all pictures that were begun and evaluated, complete or not.
     ///
     /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics ([`Keep`](crate::Keep)) returns only
-    /// the last of them.
+    /// the last pictures.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
@@ -149,7 +149,7 @@ impl Outcome {
     /// Returns the number of complete new pictures per second, over the result window.
     ///
     /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
-    /// two pictures were shown, or if all of them belong to the warm-up.
+    /// two pictures were shown, or if all shown pictures belong to the warm-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;

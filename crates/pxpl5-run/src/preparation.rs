@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 /// Number of fields of a dry run for firmware that computes the display times of its views.
 ///
-/// This number suffices for the statistics of the prediction interval. If no picture is complete after so many fields,
-/// the dry run takes all fields.
+/// This number suffices for the statistics of the prediction interval. If no picture is complete after this number of
+/// fields, the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
 /// Results of the preparation.

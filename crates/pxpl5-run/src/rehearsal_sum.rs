@@ -123,7 +123,7 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
+    /// Finishes all views except the newest view, which the next picture may show too. At the end of the run, finishes
     /// the newest view too.
     fn end_views(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();

@@ -12,8 +12,8 @@ use std::str::FromStr;
 pub enum Warp {
     /// The whole picture is shifted by yaw and pitch. The result is exact only in the middle of the picture.
     Shift,
-    /// The picture is rotated about the eye by a homography, like today's timewarp. The result is exact for rotations
-    /// of the head. Translations remain uncorrected.
+    /// The picture is rotated about the eye by a homography, as in timewarp, the method of current headsets. The result
+    /// is exact for rotations of the head. Translations remain uncorrected.
     Rotation,
     /// Each pixel is moved by its depth. The result is exact for rotations and translations, except where the picture
     /// lacks the content.
@@ -82,8 +82,8 @@ impl Reprojection {
 
     /// The raster offset of VDRT (Breglia 1981): a shift whose pose is taken at the retrace, once per field.
     ///
-    /// The rates of yaw and pitch continue the shift during the field. The picture counts as drawn beyond the edge of
-    /// the screen.
+    /// The rates of yaw and pitch continue the shift during the field. The picture is assumed to extend beyond the edge
+    /// of the screen.
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 

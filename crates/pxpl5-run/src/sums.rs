@@ -44,10 +44,10 @@ pub struct FinalResults<'a> {
     /// Largest number of samples of each kind that are kept individually: see
     /// [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Currently known result window. `None` if the run has no window.
+    /// Result window as determined so far. `None` if the run has no window.
     ///
-    /// The start of the result window may still move to a later period. Then all data that the observer received before
-    /// lies outside the result window.
+    /// The start of the result window may still move to a later period. All data that the observer received earlier
+    /// then lies outside the result window.
     pub window: Option<ResultWindow>,
 }
 

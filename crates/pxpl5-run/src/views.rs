@@ -6,7 +6,7 @@ use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// Function that returns the view with a number, from the pose that is sampled at a time.
+/// Function that returns a view. The arguments are the view's number and the time at which the pose is sampled.
 pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
 /// Function by which firmware with its own clock requests a view. The arguments are the view's number, the instant up

@@ -6,9 +6,9 @@
 //! is the time from the low point to the step of the D/A line. Rendering latency is the time from this step to the step
 //! of the screen.
 //!
-//! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. It also has the host's
-//! detection of low points. The caller simulates the system and supplies the steps of the D/A line and the light on the
-//! screen.
+//! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
+//! host's detection of low points. The caller simulates the system and supplies the steps of the D/A line and the light
+//! on the screen.
 
 mod detection;
 mod measurement;

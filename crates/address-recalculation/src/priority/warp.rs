@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 pub enum Falloff {
     /// No displacement. The images of the two memories do not meet at the border.
     None,
-    /// Linear decrease to 0.
+    /// The displacement decreases linearly to 0.
     #[default]
     Linear,
-    /// Smooth decrease to 0, with slope 0 at both ends.
+    /// The displacement decreases smoothly to 0, with slope 0 at both ends.
     Smoothstep,
     /// Full displacement within the length of the falloff, and none beyond.
     Step,

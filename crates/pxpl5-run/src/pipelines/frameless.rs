@@ -41,8 +41,8 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the others pass
-    /// through the frame buffer's port.
+    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the other slave
+    /// processors pass through the frame buffer's port.
     ///
     /// A run of i860 code uses a fixed number, because the time of code is unknown in advance.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {

@@ -68,8 +68,8 @@ impl Walk {
         self.ways[self.corners.len()]
     }
 
-    /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or one longer
-    /// than the closed path, wraps around.
+    /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or a distance
+    /// longer than the closed path, wraps around.
     #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());

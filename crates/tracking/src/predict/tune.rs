@@ -15,8 +15,8 @@ use crate::tracker::{TrackerModel, TrackerReport};
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports on which a filter is tuned: those of a 120 Hz tracker in `TRAINING_S`. A faster tracker
-/// reaches the limit sooner.
+/// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
+/// tracker reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the evaluated run has this seed, the tuning uses the next
@@ -45,7 +45,8 @@ pub struct Training {
     pub seconds: f64,
     /// Number of reports from which a prediction was evaluated.
     pub reports: u64,
-    /// Seed of the tracker's noise during the tuning. This seed always differs from that of the evaluated run.
+    /// Seed of the tracker's noise during the tuning. This seed always differs from the seed of the noise in the
+    /// evaluated run.
     pub seed: u64,
     /// Mean distance between predicted and true position after the tuning, m.
     pub mean_m: f64,

@@ -168,10 +168,10 @@ impl Measurement {
     }
 
     /// Returns true if both measurements agree on average over all passes. "Outside" is the oscilloscope, and "inside"
-    /// is the time stamps. The outside tracking latency may exceed the inside one by at most one report interval
-    /// (detection by crossing). The outside rendering latency may exceed the inside one by at most the time from the
-    /// retrace until the beam passes the photodiode. The outside rendering latency may be smaller only if the pipeline
-    /// counts frames as shown during the scan.
+    /// is the time stamps. The outside tracking latency may exceed the inside tracking latency by at most one report
+    /// interval (detection by crossing). The outside rendering latency may exceed the inside rendering latency by at
+    /// most the time from the retrace until the beam passes the photodiode. The outside rendering latency may be
+    /// smaller only if the pipeline counts frames as shown during the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;

@@ -118,7 +118,7 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the register load that is complete at exactly this instant, or else the first one after it.
+    /// Returns the register load that is complete at exactly this instant, or else the first load after this instant.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

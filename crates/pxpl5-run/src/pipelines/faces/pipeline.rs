@@ -238,7 +238,7 @@ const ORIENTATION_PORT: usize = 0;
 
 /// Connection from the host to the display that carries the head's orientations.
 ///
-/// The first orientation is the head's initial orientation. Later ones follow tracker reports or are predicted.
+/// The first orientation is the head's initial orientation. Later orientations follow tracker reports or are predicted.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -399,7 +399,8 @@ impl Pipeline for FacePipeline {
         true
     }
 
-    /// Counts the fields since the first swap of any memory. Each field is shown with its own latched orientation.
+    /// Counts the fields since the first swap of any memory, because each field is shown with its own latched
+    /// orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);

@@ -297,7 +297,7 @@ impl Layout {
         Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
-    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous one and stays below
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
     /// the limit.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();
