@@ -127,7 +127,7 @@ impl OrientationLatch {
     /// # Errors
     ///
     /// Fails in the same cases as [`Orientation::new`]. A refused matrix is counted and does not replace the previous
-    /// one.
+    /// matrix.
     pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         match Orientation::new(rows) {
             Ok(orientation) => {
@@ -142,7 +142,7 @@ impl OrientationLatch {
         }
     }
 
-    /// Returns the words that the display reads at `time`: those of the last matrix that had arrived.
+    /// Returns the words that the display reads at `time`: the words of the last matrix that had arrived.
     #[must_use]
     pub fn at(&self, time: Time) -> MatrixWords {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);

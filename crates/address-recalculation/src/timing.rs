@@ -76,8 +76,8 @@ impl ArpTiming {
         FIXED_STAGES + self.quotient_bits + self.compare_stages()
     }
 
-    /// Returns the duration of all stages. The orientation for a pixel must be known this long before the pixel is
-    /// displayed.
+    /// Returns the duration of all stages. The orientation for a pixel must arrive at least this time before the pixel
+    /// is displayed.
     #[must_use]
     pub const fn depth(&self) -> Span {
         Span(self.stages() * self.stage_ps)

@@ -47,7 +47,7 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next slower one. `places` are the two eye positions.
+/// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
 pub(crate) fn warp(
     settings: &crate::settings::Settings,
     dealing: &CellAssignment,

@@ -19,7 +19,7 @@
 //! - [`walk()`] counts the updates, draws and tears of a whole walk. [`Report`] writes them as JSON.
 //! - [`WalkOutcome`] holds the results of one plan. [`compare()`] simulates a walk with every policy and kind of
 //!   warping.
-//! - [`figures`] compares the papers' figures with the simulated ones. [`pictures`] draws pictures.
+//! - [`figures`] compares the papers' figures with the simulated figures. [`pictures`] draws pictures.
 //!
 //! Units are metres, seconds and radians unless a name contains another unit. A frame is 1/60 s. Results are
 //! bit-identical on every host.

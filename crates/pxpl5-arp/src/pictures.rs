@@ -52,7 +52,7 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in ones are valid.
+/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
@@ -122,7 +122,7 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 
 /// Returns pictures of one frame: cube faces, views, the memory shown at each pixel, and errors.
 ///
-/// The faces include those of a reference memory, which holds the whole scene. Views are drawn with and without the
+/// The faces include the faces of a reference memory, which holds the whole scene. Views are drawn with and without the
 /// lens.
 fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, WalkError> {
     let faces = Faces::of(simulation)?;
@@ -209,7 +209,7 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
 }
 
 /// Returns views of one frame against a white background: with tears, warped, and without cuts. A last picture is the
-/// difference of the first two.
+/// difference of the first two pictures.
 fn gaps(
     world: &World,
     torn: &Settings,

@@ -32,7 +32,8 @@ pub struct VariantRow {
     pub draws_percent: f64,
     /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,
-    /// Percentage of samples on the intersections of mesh and slices that have a drawn pixel beside them.
+    /// Percentage of shown samples, along the intersections of mesh and slices. A sample is shown if its pixel, or one
+    /// of the eight neighbouring pixels, is drawn.
     pub connected_percent: f64,
     /// Radius in pixels around the axis within which no slice can show anything, or `None` if no slice can show
     /// anything.

@@ -124,7 +124,7 @@ impl BinLayout {
 /// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector. Each of its two planes has one bit.
+/// Planes that bound each sector. Each of the sector's two planes has one bit.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
 /// The combined codes of a primitive. A bit of `and` is set if the whole primitive lies on the positive side of the

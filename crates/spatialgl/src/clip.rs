@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Only the near and far planes of an orthographic projection clip. The volume is a prism as thick as the exact
-    /// slice at the rim.
+    /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
+    /// exact slice at the rim.
     Prism,
-    /// Two user clip planes clip in each pass. Each lobe of the double wedge has its own pass.
+    /// Each pass clips with two user clip planes. Each lobe of the double wedge has its own pass.
     UserPlanes,
     /// The fragment program tests the product of the interpolated distances from both planes. This gives the exact
     /// volume in one pass.

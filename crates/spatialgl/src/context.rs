@@ -73,7 +73,7 @@ pub enum Topology {
     Triangles,
     /// Each vertex from the third on forms a triangle with the two vertices before it.
     TriangleStrip,
-    /// Each vertex from the third on forms a triangle with the first vertex and the previous one.
+    /// Each vertex from the third on forms a triangle with the first vertex and the previous vertex.
     TriangleFan,
 }
 
@@ -145,7 +145,7 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Index`] names the first index beyond the buffer. Other errors are those of [`Self::draw`].
+    /// [`SpatialError::Index`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
     pub fn draw_indexed(
         &mut self,
         buffer: &VertexBuffer,

@@ -13,7 +13,7 @@ use serde::Serialize;
 pub struct Connected {
     /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
     pub samples: u64,
-    /// Number of samples with a drawn pixel among the nine pixels around them.
+    /// Number of shown samples. A sample is shown if its pixel, or one of the eight neighbouring pixels, is drawn.
     pub shown: u64,
 }
 

@@ -16,7 +16,7 @@
 //!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
 //! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel. The sums are
-//!   integers. No voxel hides another one.
+//!   integers. No voxel hides another voxel.
 //!
 //! # Numbers
 //!

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-/// A linear function a x + b y + c over a face. x points right and y points down. Both are tangents of angles from the
-/// face's middle.
+/// A linear function a x + b y + c over a face. x points right and y points down. Both coordinates are tangents of
+/// angles from the face's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Linear {
     pub(crate) x: f64,

@@ -113,7 +113,7 @@ fn line(text: &mut String, row: &Row) {
     );
 }
 
-/// Returns as a Markdown list the rows whose simulated numbers miss the published ones, with their known causes.
+/// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
 #[must_use]
 pub fn missed(rows: &[Row]) -> String {
     let mut text = String::new();

@@ -94,7 +94,7 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in ones are valid.
+    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
     pub fn run() -> Result<Self, WalkError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;

@@ -159,13 +159,13 @@ pub struct Interpretations {
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous one.
+/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous side.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
 
 impl Tried {
-    /// Tries all cell sides, and then four more near the best one.
+    /// Tries all cell sides, and then four more sides near the best side.
     ///
     /// # Errors
     ///
@@ -196,7 +196,8 @@ fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error over the given memories. If several are equal, returns the first one.
+/// Returns the trial with the smallest error over the given memories. Of several trials with equal errors, returns the
+/// first.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }

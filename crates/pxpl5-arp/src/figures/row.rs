@@ -31,7 +31,7 @@ impl Standing {
     }
 }
 
-/// A published or derived number next to the simulated one.
+/// A published or derived number next to the simulated number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Name of the experiment, E1 to E9.
@@ -100,7 +100,7 @@ impl Row {
         }
     }
 
-    /// Returns the known cause for which the simulated number misses the published one.
+    /// Returns the known reason why the simulated number misses the published number.
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {

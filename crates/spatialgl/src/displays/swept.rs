@@ -175,7 +175,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
 
 /// Returns sine and cosine of the angle that lies `half_slices` times half the angle between slices after slice 0.
 ///
-/// Opposite directions are exact negatives of each other at every phase, because only one of them is computed.
+/// Opposite directions are exact negatives of each other at every phase, because sine and cosine are computed for only
+/// one of the two directions.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {

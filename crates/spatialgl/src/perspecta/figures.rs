@@ -99,7 +99,7 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. Its number is printed in the paper if `id` begins with P, and otherwise derived.
+/// Returns a definition. The number is printed in the paper if `id` begins with P. Otherwise the number is derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
 }

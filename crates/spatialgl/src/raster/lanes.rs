@@ -9,7 +9,7 @@ use crate::command::Combine;
 use crate::image::SliceImage;
 use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 
-/// Number of pixels in a vector. A byte of the stencil has as many pixels.
+/// Number of pixels in a vector, which is also the number of pixels in a byte of the stencil.
 const LANES: usize = 8;
 
 /// One value for each of the eight pixels of a vector.

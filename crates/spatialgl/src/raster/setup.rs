@@ -24,7 +24,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// Returns the interpolation between this corner and another one: `self` at t = 0, `other` at t = 1.
+    /// Returns the interpolation between this corner and another corner: `self` at t = 0, `other` at t = 1.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
         let from = &self.place;
