@@ -93,7 +93,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns the clump of `triangles` triangles that follows this one.
+    /// Returns the clump of `triangles` triangles that follows this clump.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -159,7 +159,7 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Records the time from which the earliest channel is free again, and sorts it among the times of the other
+    /// Records the time from which the earliest channel is free again, and sorts this time among the times of the other
     /// channels.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {

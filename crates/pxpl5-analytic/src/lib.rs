@@ -10,7 +10,7 @@
 //! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
-//! - A renderer executes commands in order. While it copies a region, it executes no other command.
+//! - A renderer executes commands in order. While a renderer copies a region, it executes no other command.
 //! - A frame-buffer port receives one region at a time, in order of arrival.
 //!
 //! For Slats on several GPs, the model processes each message in the order in which the ring grants channels
@@ -24,7 +24,7 @@
 //! - Interrupts of a GP by messages of other boards.
 //! - Words of a clump's last message besides its primitives.
 //! - The host's own messages. A mean rate replaces them.
-//! - Views after the first one (Slats).
+//! - Views after the first view (Slats).
 //! - Memory.
 
 mod clumps;

@@ -157,7 +157,7 @@ impl SlatsModel {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Counts the pictures that are due and those that are shown, if all fields have the times `times`.
+    /// Counts the pictures that are due and the pictures that are shown, if all fields have the times `times`.
     ///
     /// A field begins at the first retrace after the commands of the previous field are finished.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
@@ -187,7 +187,7 @@ impl SlatsModel {
         queues
     }
 
-    /// Returns the times of a field, and whether its copies meet their deadlines.
+    /// Returns the times of a field. Also determines if the field's copies meet their deadlines.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }

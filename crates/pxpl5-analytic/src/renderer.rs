@@ -33,7 +33,7 @@ impl Cost {
 /// Times of several configurations in nanoseconds. Each configuration has a lane, and operations treat each lane
 /// separately.
 ///
-/// The alignment is that of a vector register. A vector that crosses a cache line would take twice as long.
+/// The values are aligned as vector registers are. A vector that crosses a cache line would take twice as long.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -139,7 +139,7 @@ pub(super) struct Commands<const N: usize> {
     each: Times<N>,
     /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first equal command to the end of the last one. Execution or the arrival of words
+    /// Time from the start of the first equal command to the end of the last command. Execution or the arrival of words
     /// limits it.
     drawing: Times<N>,
     /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.

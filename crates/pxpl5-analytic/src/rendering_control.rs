@@ -69,8 +69,8 @@ fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which all pictures so far completed each stage. A picture before the first one counts as complete at time
-/// 0.
+/// Times at which all pictures so far completed each stage. A picture before the first picture counts as complete at
+/// time 0.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
@@ -421,7 +421,8 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 }
 
 impl StereoModel {
-    /// Returns the summary of the frames that are shown within the first `fields` fields, except those of the warm-up.
+    /// Returns the summary of the frames that are shown within the first `fields` fields, except the frames of the
+    /// warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         // Frames of the warm-up do not count.
@@ -456,8 +457,8 @@ impl StereoModel {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Counts the frames that are due, and those that were shown. The time of COPY for all eyes determines how often a
-    /// frame is due.
+    /// Counts the frames that are due, and the frames that were shown. The time of COPY for all eyes determines how
+    /// often a frame is due.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);

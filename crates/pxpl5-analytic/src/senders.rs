@@ -283,7 +283,7 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions. Returns the time at which the last one was accepted.
+    /// Sends the messages that clear all regions. Returns the time at which the last message was accepted.
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };

@@ -31,9 +31,8 @@
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
 //! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats
-//! the messages are those of display fields. The result is the mean over the three scenes. `token entry` is the
-//! additional time to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all
-//! bins.
+//! the messages of display fields count. The result is the mean over the three scenes. `token entry` is the additional
+//! time to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -229,7 +228,7 @@ impl CodeTimes {
     }
 }
 
-/// Returns the mean of the values, or 0 if there are none.
+/// Returns the mean of the values, or 0 if there are no values.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
     sum / f64::max(n, 1.0)

@@ -18,7 +18,7 @@ use thiserror::Error;
 pub enum FilmSurfaces {
     /// A single surface, such as the surface of one eye.
     One(SurfaceId),
-    /// All surfaces side by side, the first one on the left.
+    /// All surfaces side by side, the first surface on the left.
     All,
 }
 

@@ -11,7 +11,7 @@
 //!   volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
 //!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
-//!   For the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
+//!   For the volume, the error is the angle between a point and the voxel that shows the point in the nearest slice.
 //! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
 //!   visual angle of this cell.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn

@@ -45,7 +45,7 @@ pub struct VolumeSettings {
     pub draw: DrawNumbers,
     /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Rule for the slices of a turn that are drawn, and those that are mirrored copies.
+    /// Rule that determines which slices of a turn are drawn, and which slices are mirrored copies.
     pub strobes: Strobes,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,

@@ -19,7 +19,8 @@ const TOKEN: u32 = 6;
 /// Node number of a board other than the measured one.
 const OTHER: NodeId = NodeId(2);
 
-/// Total time and number of a board's messages. A received message counts as one, and so does a chain that was sent.
+/// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts
+/// once.
 #[derive(Default)]
 pub(super) struct Traffic {
     span: Span,

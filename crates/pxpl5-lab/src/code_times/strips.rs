@@ -12,7 +12,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene whose triangles are searched for those that meet a strip (a group of scan lines).
+/// Scene that is searched for triangles that meet a strip (a group of scan lines).
 const SCENE: &str = "mig";
 /// Number of boards that share the scene in the second measurement. The difference from the measurement of the whole
 /// scene gives the time of one triangle.

@@ -1,4 +1,4 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that it takes.
+//! The width at which the interval of a mean is narrow enough, and the number of seeds that this width needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;

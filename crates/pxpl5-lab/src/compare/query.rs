@@ -286,7 +286,7 @@ impl CompareQuery {
         }
     }
 
-    /// Returns seeds that follow the seeds of the query and those that were added before.
+    /// Returns seeds that follow the seeds of the query and the seeds that were added before.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;

@@ -40,7 +40,7 @@ pub struct CauseShare {
     pub px: MeanInterval,
 }
 
-/// Mean error of a comparison row when another predictor replaces its own.
+/// Mean error of a comparison row when another predictor replaces the row's own predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the row's own predictor.
@@ -254,7 +254,7 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 
 impl ErrorSpread {
     /// Combines the errors of all runs. Several motions give an interval over the seeds. One motion gives an interval
-    /// over time, because further seeds do not move the head otherwise.
+    /// over time, because further seeds do not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();

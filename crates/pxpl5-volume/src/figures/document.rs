@@ -95,7 +95,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Returns the known cause for which the model misses the figure with this identifier.
+/// Returns the known reason why the model misses the figure with this identifier.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {

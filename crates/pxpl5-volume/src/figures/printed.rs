@@ -91,7 +91,7 @@ fn has_axis(view: &SliceView) -> bool {
     closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
 }
 
-/// Returns points of a grid beside the axis. Many of them lie in boundary planes.
+/// Returns points of a grid beside the axis. Many points lie in boundary planes.
 fn grid() -> impl Iterator<Item = [f64; 3]> {
     let side = -60..=60i32;
     let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));

@@ -48,7 +48,7 @@ pub struct BoundRow {
     /// Volumes per second if only the slowest part limits this rate.
     pub volumes_hz: f64,
     /// Name of the slowest part: `renderers`, `ring`, `port` or `processors`. If several parts are equally slow, the
-    /// name is that of the first of these parts.
+    /// first of these parts is named.
     pub limited_by: &'static str,
 }
 

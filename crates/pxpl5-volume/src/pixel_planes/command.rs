@@ -1,5 +1,5 @@
 //! The command that draws a triangle in a slice: three edges, the hyperbola and three colours. The renderers' trees
-//! evaluate all of them.
+//! evaluate all these functions.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse};

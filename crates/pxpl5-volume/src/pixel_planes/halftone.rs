@@ -33,8 +33,8 @@ fn scratch(layout: &Layout) -> Operand {
     layout.plan().scratch.expect("pxpl5-volume: slices are drawn in a layout with scratch")
 }
 
-/// Returns the halftone program. For each channel, it enables all pixels, disables those with threshold >= channel, and
-/// stores the Enable bit.
+/// Returns the halftone program. For each channel, the program enables all pixels, disables the pixels with threshold
+/// >= channel, and stores the Enable bit.
 #[must_use]
 pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
     let of_channel = |channel: u8| {

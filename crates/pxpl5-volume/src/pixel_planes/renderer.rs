@@ -42,7 +42,7 @@ pub struct RendererWork {
 }
 
 /// A renderer of slices with a hyperbolic clip and an orthographic projection. If several triangles cover a pixel, the
-/// last one determines its colour.
+/// last triangle determines its colour.
 ///
 /// A pixel counts as drawn if its colour is not black, because the arrays have no stencil.
 #[derive(Debug)]
@@ -206,7 +206,7 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all of them are
+/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all commands are
 /// legal.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;

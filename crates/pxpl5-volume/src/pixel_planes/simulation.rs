@@ -49,7 +49,7 @@ pub struct SimulatedRow {
     pub processors: u64,
     /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,
-    /// Volumes per second if each volume begins after all tiles of the previous one have arrived.
+    /// Volumes per second if each volume begins after all tiles of the previous volume have arrived.
     pub volumes_hz: f64,
     /// Lower bound of the time for the same messages, given by the slowest part of the machine.
     pub bound: BoundRow,
