@@ -52,7 +52,8 @@ fn of_clone(crate_folder: &Path) -> Option<(String, bool)> {
     Some((digits, !changes.is_empty()))
 }
 
-/// Makes Cargo run the script again when a file or folder changes. A missing path would make it run at every build.
+/// Makes Cargo run the script again when a file or folder changes. A missing path would make the script run at every
+/// build.
 fn watch(path: &Path) {
     if path.exists() {
         println!("cargo:rerun-if-changed={}", path.display());

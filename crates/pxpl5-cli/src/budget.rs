@@ -80,8 +80,8 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` tells the user how
-    /// to reduce the work.
+    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` is a text for the
+    /// user: how to reduce the work.
     ///
     /// # Errors
     ///
@@ -91,8 +91,8 @@ impl BudgetArgs {
         self.admit_estimate(study.estimate(threads), advice)
     }
 
-    /// Returns an error if the estimate of a command exceeds the budget. `advice` tells the user how to reduce the
-    /// work.
+    /// Returns an error if the estimate of a command exceeds the budget. `advice` is a text for the user: how to reduce
+    /// the work.
     ///
     /// # Errors
     ///

@@ -283,7 +283,7 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Copies all settings of another file into this one. The copied settings override the current settings.
+    /// Copies all settings of another file into this file. The copied settings override the current settings.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;

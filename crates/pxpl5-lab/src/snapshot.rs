@@ -6,7 +6,7 @@
 //! checkpoint also holds the trace hash and the number of events, which identify the state.
 //!
 //! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. The program
-//! then compares the hash and the number of events with the saved ones, and continues the run. A restored run is
+//! then compares the hash and the number of events with the saved values, and continues the run. A restored run is
 //! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
 //! (thousands of fields a second for small scenes).
 //!
@@ -201,8 +201,8 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run is not the saved one, and
-    /// [`SnapshotError::Run`] if the experiment cannot run.
+    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run differs from the saved data,
+    /// and [`SnapshotError::Run`] if the experiment cannot run.
     pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, SnapshotError> {
         // A different experiment is refused before its run.
         self.check_scene(experiment.scene(), file)?;
@@ -280,7 +280,7 @@ impl Snapshot {
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
-    /// Compares the scene with the saved one.
+    /// Compares the scene with the saved scene.
     ///
     /// # Errors
     ///
@@ -289,7 +289,7 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine with the saved one. The machine must have repeated the run up to the saved field.
+    /// Compares a machine with the saved machine. The machine must have repeated the run up to the saved field.
     ///
     /// # Errors
     ///

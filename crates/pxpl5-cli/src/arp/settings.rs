@@ -99,7 +99,7 @@ impl WalkArgs {
     }
 
     /// Returns an error if the estimated time or memory of several walks (frames seen along a path) exceeds the budget.
-    /// `walks` is their number.
+    /// `walks` is the number of walks.
     ///
     /// # Errors
     ///

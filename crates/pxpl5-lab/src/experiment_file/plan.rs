@@ -304,8 +304,9 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head, those
-    /// of the tracker, the host's port and the predictor. Paths of tracking parameters begin with `tracking.`.
+    /// Returns all parameters of the experiment. These are the parameters of the machine and, with a tracked head, the
+    /// parameters of the tracker, the host's port and the predictor. Paths of tracking parameters begin with
+    /// `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);

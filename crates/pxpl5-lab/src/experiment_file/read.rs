@@ -30,8 +30,8 @@ impl ExperimentFile {
             .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number, any other a
-    /// whole number.
+    /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number. Any other
+    /// value must be a whole number.
     pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),

@@ -148,7 +148,7 @@ fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
-/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in one of just-in-time pixels.
+/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in a picture of just-in-time pixels.
 fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);

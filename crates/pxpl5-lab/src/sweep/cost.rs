@@ -1,5 +1,5 @@
-//! Estimates the cost of points before they run. The estimates are those of [`crate::estimate`]. The analytic level
-//! (closed form) gives the number of pictures.
+//! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
+//! form) gives the number of pictures.
 //!
 //! Callers that distribute points over computers correct the estimates by the durations of finished points.
 
