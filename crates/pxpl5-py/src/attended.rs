@@ -89,8 +89,8 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// Stack size of the worker thread in bytes, equal to that of a main thread. The emulator has not been tested with a
-/// smaller stack.
+/// Stack size of the worker thread in bytes, equal to the stack of a main thread. The emulator has not been tested with
+/// a smaller stack.
 pub(crate) const STACK_BYTES: usize = 8 << 20;
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.

@@ -29,8 +29,8 @@ const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the messages that began after an instant, at most `most` of them. If there are more, only every n-th message
-/// is returned. Messages that still occupy a channel are included.
+/// Returns the messages that began after an instant, at most `most` messages. If there are more, only every n-th
+/// message is returned. Messages that still occupy a channel are included.
 pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     let record = stepper.record();
     let name = |node| record.ports().board(node).to_string();

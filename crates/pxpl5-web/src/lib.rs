@@ -144,7 +144,7 @@ impl WebMachine {
     }
 
     /// Returns the outlines of the ideal picture at the present instant as bytes, with transparent pixels elsewhere.
-    /// The ideal picture is the one without latency. The result is empty if a surface has no ideal picture.
+    /// The ideal picture has no latency. The result is empty if a surface has no ideal picture.
     #[must_use]
     pub fn outlines(&self, surface: u16) -> Vec<u8> {
         self.0.outlines(surface)
@@ -222,22 +222,22 @@ impl WebMachine {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
-    /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+    /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
     #[must_use]
     pub fn misses_all(&self) -> bool {
         look::misses_all(self.0.stepper())
     }
 
     /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
-    /// and what was not measured is null.
+    /// and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
         look::limits(self.0.stepper()).to_string()
     }
 
-    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in time
-    /// as JSON. The second number is null if the scene cannot be decimated. The search for the second number can take
-    /// some seconds.
+    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in
+    /// time, as JSON. The second number is null if the scene cannot be decimated. The search for the second number can
+    /// take some seconds.
     #[must_use]
     pub fn fitting(&self) -> String {
         self.0.fitting().to_string()
