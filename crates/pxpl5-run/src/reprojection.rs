@@ -58,8 +58,8 @@ impl Every {
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
     /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
-    /// (range 1,000 to 4,000). The latency is 500 for one pose per strip and 100 for one pose per line, because a
-    /// pipeline beside the scan holds a few lines (64 to 1,000).
+    /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
+    /// 1,000). In both cases a pipeline beside the scan holds a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

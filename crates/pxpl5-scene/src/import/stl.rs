@@ -1,7 +1,7 @@
 //! Reader of STL files, ASCII and binary.
 //!
-//! The existing library stl_io is not used for three reasons: its errors lack the line number; it reads a binary file
-//! as text if the header begins with `solid`; and it refuses normals that are not numbers.
+//! The existing library stl_io is not used, for three reasons. Its errors lack the line number. The library reads a
+//! binary file as text if the header begins with `solid`. The library also refuses normals that are not numbers.
 
 use glam::DVec3;
 

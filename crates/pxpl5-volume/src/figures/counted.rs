@@ -54,8 +54,8 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     Ok(context.present())
 }
 
-/// Returns figures D8, P9 and D7: the numbers of queries and clears for a volume, with and without batches, and the
-/// number of words in a slice.
+/// Returns figures D8, P9 and D7. They are the numbers of queries and clears for a volume, with and without batches,
+/// and the number of words in a slice.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
