@@ -4,8 +4,9 @@
 //! table - multiply - add - add - face - divide x q - address - memory - compare x log2 n - interpolate -> light
 //! ```
 //!
-//! A pixel enters at each clock and is displayed after as many clocks as there are stages. Products are sums of partial
-//! products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds the nearest texel.
+//! A pixel enters at each clock. Each stage takes one clock, and the pixel is displayed after the last stage. Products
+//! are sums of partial products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds
+//! the nearest texel.
 //!
 //! The reference model shares with the fast model only the names of faces and the format of words.
 

@@ -249,8 +249,8 @@ impl StereoModel {
     /// them.
     ///
     /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
-    /// renderers than slaves, a slave can finish early. The first slave finishes when each token has visited as many
-    /// slaves as there are renderers.
+    /// renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that each
+    /// token has visited equals the number of renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)

@@ -9,8 +9,8 @@
 //! # Behaviour
 //!
 //! - [`CubeView::draw`] draws triangles as seen from an eye position. The faces may already contain other triangles.
-//!   Each texel shows the nearest triangle. If two triangles are equally near, the first one is visible. The faces are
-//!   parallel to the world's axes, whatever the orientation of the head.
+//!   Each texel shows the nearest triangle. If two triangles are equally near, the first triangle is visible. The faces
+//!   are parallel to the world's axes, whatever the orientation of the head.
 //! - A texel shows the triangle at the texel's middle. This holds for guard texels as well: the tangent of a face's
 //!   half angle is the ratio of all texels to inner texels.
 //! - Triangles are not clipped. Edges and 1/w are linear functions over a face, even for corners behind the eye. Parts

@@ -267,7 +267,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
 }
 
 /// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
-/// Control the host does so when SEND begins. Under Slats the graphics processor does so when a field begins.
+/// Control this is the time at which the host begins SEND. Under Slats it is the time at which a field begins on the
+/// graphics processor.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks

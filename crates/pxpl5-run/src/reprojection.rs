@@ -52,7 +52,7 @@ impl Every {
     /// All parts of a scan, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("strip", Self::Strip), ("line", Self::Line)];
 
-    /// Number of lines in a strip: as many as in a region.
+    /// Number of lines in a strip, equal to the number of lines in a region.
     pub const STRIP: u32 = REGION_SIZE;
 
     /// Returns the default latency of a device, in microseconds (assumed).

@@ -20,9 +20,9 @@ use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// Returns a decimated copy of the scene with at most `n` primitives, and with as many as the surfaces of the scene
-    /// allow. A closed surface has an even number of triangles, so the result can have one primitive less than an odd
-    /// `n`. The ratio of spheres to triangles stays the same.
+    /// Returns a decimated copy of the scene with `n` primitives, or with fewer if the surfaces of the scene do not
+    /// allow exactly `n`. A closed surface has an even number of triangles, so the result can have one primitive less
+    /// than an odd `n`. The ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.

@@ -131,7 +131,7 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Returns the scene with these warnings about its file instead of its present ones.
+    /// Returns the scene with these warnings about its file instead of its present warnings.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;

@@ -58,7 +58,7 @@ struct FaceView {
 
 impl CubeView {
     /// Draws triangles as seen from an eye position. Each texel shows the nearest triangle. If two triangles are
-    /// equally near, the first one is visible.
+    /// equally near, the first triangle is visible.
     ///
     /// # Panics
     ///

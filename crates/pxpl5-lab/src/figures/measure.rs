@@ -187,8 +187,8 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c: as many screen-filling triangles as the bins hold according to the
-    /// papers.
+    /// Runs the experiment of figures 16b and 16c: the number of screen-filling triangles that fit into the bins
+    /// according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)

@@ -28,8 +28,8 @@ pub enum FieldCount {
 /// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
 /// Rendering Control.
 ///
-/// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with the
-/// same interpretation. No answer is chosen for a single figure.
+/// The first two answers concern the figures. The other answers concern the machine and the scenes. All figures are
+/// measured with the same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
     /// Definition of the latency samples whose mean a paper prints.

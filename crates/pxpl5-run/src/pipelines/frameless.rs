@@ -201,8 +201,8 @@ impl Pipeline for Frameless {
 
 /// Returns, for each update, the number of arrived blocks, and the arrival time and target of the last block.
 ///
-/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region is then the
-/// last one, independent of the order of the records.
+/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region then counts as
+/// the last block, independent of the order of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {

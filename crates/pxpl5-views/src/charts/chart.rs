@@ -82,7 +82,7 @@ pub struct Chart {
     pub across: AxisScale,
     /// Scale of the vertical axis.
     pub up: AxisScale,
-    /// Series to draw. Later series cover earlier ones.
+    /// Series to draw. Later series cover earlier series.
     pub series: Vec<ChartSeries>,
     /// Size of the chart.
     pub size: ChartSize,

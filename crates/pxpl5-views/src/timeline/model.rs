@@ -32,7 +32,7 @@ pub struct Bar {
     pub receiving: Vec<(Time, Time)>,
 }
 
-/// A row of a timeline, for a resource that works independently of the others.
+/// A row of a timeline, for a resource that works independently of other resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
     /// Name on the left of the row.

@@ -31,7 +31,8 @@ pub struct SliceTriangle {
     pub edges: [Linear; 3],
     /// The hyperbola A B + b as a function on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
-    /// Linear functions for red, green and blue, with as many fraction bits as colours on the ring have.
+    /// Linear functions for red, green and blue. Their number of fraction bits is the number that colours have on the
+    /// ring.
     pub colour: [Linear; 3],
 }
 

@@ -11,9 +11,9 @@
 //! - Slice k goes to processor k mod G and to renderer k mod R. A processor computes the commands of a slice and hands
 //!   them to its port as one transfer. The transfer occupies the renderer's port until the last word. Meanwhile the
 //!   processor computes the commands of at most one more slice.
-//! - A renderer is a complete board. A full input FIFO stops the sender. The controller needs as many clocks as the
-//!   programs have. A region with at least one occupied tile is copied to the backing store, and sent from there while
-//!   the next region's commands arrive.
+//! - A renderer is a complete board. A full input FIFO stops the sender. The instructions of the programs determine the
+//!   clocks of the controller. A region with at least one occupied tile is copied to the backing store, and sent from
+//!   there while the next region's commands arrive.
 //! - Instead of 32-bit pixels, the tiles of the region are sent, one message each, in the format of the display.
 //!
 //! # Not modelled

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Empty tiles are not sent, so the map must make these tiles dark. Without this rule (derived), the store would still
-//! show the tiles of the volume before the last one. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] per
-//! message. All messages write to the store that is not shown.
+//! show old tiles: the tiles of the volume that the same store held before. Messages consist of ring words, at most
+//! [`MAX_MESSAGE_WORDS`] per message. All messages write to the store that is not shown.
 
 use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
