@@ -67,7 +67,7 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Computes a field on each of `N` machines. All have one GP and equal values of [`SlatsModel::structure`].
+/// Computes a field on each of `N` machines. All machines have one GP and equal values of [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];

@@ -451,7 +451,7 @@ mod tests {
         }
     }
 
-    /// A run that discards records has as many views in memory at its end as after the first discard, or fewer.
+    /// A run that discards records must not have more views in memory at its end than after the first discard.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [

@@ -205,8 +205,8 @@ impl Hmd {
     }
 }
 
-/// Returns the rotation that takes a point `right` metres to the right and `ahead` metres ahead to the axis of view.
-/// Square roots have the same bits on every host.
+/// Returns the rotation that moves a point onto the axis of view. The point lies `right` metres to the right and
+/// `ahead` metres ahead. Square roots have the same bits on every host.
 fn turn_towards(right: f64, ahead: f64) -> DMat4 {
     let distance = (right * right + ahead * ahead).sqrt();
     let (sin, cos) = (right / distance, ahead / distance);

@@ -33,7 +33,7 @@ impl Linear {
     }
 }
 
-/// A triangle on a face.
+/// The edge functions of a triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
     /// Edge functions, positive inside the triangle. Function i belongs to the edge opposite to corner i.

@@ -199,7 +199,7 @@ impl ComparisonRow {
     }
 }
 
-/// Sample of runs behind a row.
+/// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     /// Number of seeds.

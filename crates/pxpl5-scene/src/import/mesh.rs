@@ -82,7 +82,8 @@ pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     DVec3::from_array(v.to_array().map(|x| libm::ldexp(x, -exponent))).try_normalize()
 }
 
-/// Returns a vector along the normal of a triangle whose length is twice the triangle's area.
+/// Returns the area vector of a triangle. The vector has the direction of the normal, and twice the triangle's area as
+/// its length.
 pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

@@ -158,8 +158,8 @@ impl Model {
         }
     }
 
-    /// Replaces the triangles of a concave polygon. The triangles from index `first` on all share its first corner and
-    /// cover its notches. The new triangles leave the notches open.
+    /// Replaces the triangles of a concave polygon, which begin at index `first`. The old triangles all share the
+    /// polygon's first corner and also cover areas outside the polygon. The new triangles cover only the polygon.
     pub(super) fn cut_polygon(&mut self, first: usize) {
         match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
             Cut::Fan => {}

@@ -135,8 +135,8 @@ fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f6
     Some((origin, scale_to_one(farthest)?))
 }
 
-/// Returns a vector along the normal of a polygon whose length is twice the area. `from_first` returns the position of
-/// a corner relative to the first corner.
+/// Returns the area vector of a polygon. The vector has the direction of the normal, and twice the polygon's area as
+/// its length. `from_first` returns the position of a corner relative to the first corner.
 fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
     fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
 }

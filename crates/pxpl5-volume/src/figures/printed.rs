@@ -63,8 +63,8 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Vo
     Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
 }
 
-/// Returns figure P2. Points on a circle around the axis meet each plane on both sides, and points on the axis are in
-/// both planes.
+/// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
+/// each twice. The second row counts the slices whose planes both contain the axis.
 fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let view = &display.views()[7];
     let steps = 100_000;

@@ -98,7 +98,7 @@ impl SweptConfig {
     }
 }
 
-/// A display whose slices are arranged around an axis: the published display, or one with other numbers.
+/// A display whose slices are arranged around an axis: the published display, or a display with other numbers.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,

@@ -33,7 +33,7 @@ impl Items<'_> {
 
 /// Numbers of an accessor. All positions in buffers are checked.
 pub(super) struct Numbers<'a> {
-    /// `None` stands for zeros.
+    /// Numbers before the sparse replacements. `None` stands for zeros.
     base: Option<Items<'a>>,
     /// Indices in increasing order, the values that replace the items at these indices, and the number of indices.
     sparse: Option<(Items<'a>, Items<'a>, usize)>,
