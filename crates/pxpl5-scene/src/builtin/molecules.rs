@@ -15,8 +15,8 @@ static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
 /// Number of cross-sections of the ribbon: (2,620 triangles - 2 for each of 2 ends) / 8 + 1.
 const SECTIONS: usize = 328;
 
-/// Half the distance between the centres of the two myoglobin molecules, Ångström. Each molecule has a radius of about
-/// 25.
+/// Half the distance between the centres of the two myoglobin molecules, Ångström. The radius of each molecule is
+/// about 25.
 const APART: f64 = 25.0;
 
 /// Greatest distance between alpha carbons three residues apart that counts as a helix, Ångström. The distance is 5.0
