@@ -421,9 +421,9 @@ mod tests {
     /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
     /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
     /// columns of regions, and three borders separate the four rows. The triangle's bounding box touches on average
-    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the box.
-    /// Some boxes contain a point where four regions meet. In half of these cases the triangle therefore touches one
-    /// region less.
+    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the
+    /// box. Some boxes contain a point where four regions meet. In half of these cases the triangle therefore touches
+    /// one region less.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;
