@@ -29,7 +29,7 @@ impl Orientation {
         if let Some(component) = rows.iter().flatten().find(|component| !component.is_finite()) {
             return refused(format!("a component of {component}"));
         }
-        // The products of rows must be those of an orthonormal matrix.
+        // The products of rows must equal the products of an orthonormal matrix.
         for i in 0..3 {
             for j in 0..=i {
                 let product = dot(rows[i], rows[j]);

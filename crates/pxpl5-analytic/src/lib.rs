@@ -87,7 +87,7 @@ fn triangles_in_time(
     let whole = Arc::clone(plain.scene());
     let mut denser = Arc::clone(&whole);
     let mut in_time = 0;
-    // Bisection between a number that is in time and one that is too many.
+    // Bisection between a number of primitives that is in time and a number that is too large.
     let mut too_many = primitives(&whole) + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;

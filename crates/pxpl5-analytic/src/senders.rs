@@ -250,7 +250,7 @@ impl<'a> Ring<'a> {
         // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
-        // With several GPs, the first one clears all regions and then sends the view.
+        // With several GPs, the first GP clears all regions and then sends the view.
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;

@@ -191,7 +191,7 @@ fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let mut sum = 0.0;
     for y in 0..scan.height() {
         let field = PeriodNumber(u64::from(y % 2));
-        // All pixels of a line have equal distances, so the first and the last one give the mean.
+        // All pixels of a line have equal distances, so the first and the last pixel give the mean.
         for x in [0, scan.width() - 1] {
             let latched = scan.latches(from, x, y, field)?;
             sum += ms(scan.lights(x, y, field)?.since(latched)) - ms(display.timing.depth());

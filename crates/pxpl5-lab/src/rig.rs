@@ -93,7 +93,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd ones a dark frame.
+        // Even sightings make a light frame, odd sightings a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,

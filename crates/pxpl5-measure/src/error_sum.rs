@@ -327,7 +327,8 @@ impl Evaluation {
         let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
-            // Find the place in the drawn picture that the pixel shows. It can lie beyond the edge of the picture.
+            // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
+            // picture.
             let from = match &self.content {
                 Content::AdvancedMotion(_, offset) => {
                     let Some(offset) = offset else { continue };

@@ -84,7 +84,7 @@ impl Screen {
 
     /// Returns the region that a pixel of a field shows at the instant `at`, or `None` before the first arrival.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
-        // Buffer 0 is shown first, and every swap shows the other one.
+        // Buffer 0 is shown first, and every swap shows the other buffer.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);
         let buffer = self.swaps[..before].last().map_or(0, |swap| ((swap.1 + 1) % 2) as u8);
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));

@@ -38,7 +38,7 @@ impl Outcome {
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
-                // A second caller waits for this lock until the first one has finished.
+                // A second caller waits for this lock until the first caller has finished.
                 let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
                 if let Some(outcome) = outcome.take() {
                     let _ = self.results.set(Results::of_run(outcome));

@@ -47,7 +47,7 @@ impl Picture {
     #[new]
     fn new(py: Python<'_>, pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
         let mut array = py.import("numpy")?.call_method1("asarray", (pixels,)).map_err(wrong_setting)?;
-        // Integers of another type are taken if all of them fit. A cast alone would change those that do not.
+        // Integers of another type are taken if all integers fit. A cast alone would change integers that do not fit.
         let bytes = array.call_method1("astype", ("uint8",));
         if let Ok(bytes) = bytes
             && matches!(array.getattr("dtype")?.getattr("kind")?.extract()?, 'i' | 'u')

@@ -283,7 +283,7 @@ impl Outcome {
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
         let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
-        // A pipeline without a second copy spends no time on it. Without any copy, the time is unknown.
+        // A pipeline without a second copy spends no time on a second copy. Without any copy, the time is unknown.
         let last_copy_ms = if last_copy_ms.is_nan() && !first_copy_ms.is_nan() { 0.0 } else { last_copy_ms };
         Summary {
             latencies_ms: tally.latency_ms.clone(),

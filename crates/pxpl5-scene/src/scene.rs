@@ -289,7 +289,7 @@ impl SceneParts {
             vertex.position = model.transform_point3(vertex.position.as_dvec3()).as_vec3();
             vertex.normal = normal.normalize_or(DVec3::Y).as_vec3();
         }
-        // The matrix scales uniformly, so the scale of one axis is also that of the radii.
+        // The matrix scales uniformly, so the scale of one axis is also the scale of the radii.
         let scale = model.x_axis.truncate().length();
         for sphere in &mut self.spheres[structure.spheres.clone()] {
             sphere.centre = model.transform_point3(sphere.centre.as_dvec3()).as_vec3();

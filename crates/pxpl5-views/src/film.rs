@@ -121,7 +121,7 @@ impl Film {
         let plain = self.without_pixels()?;
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
         for period in self.first_period.until(self.first_period.after(self.periods)) {
-            // A period is over when all events at the beginning of the next one have been handled.
+            // A period is over when all events at the beginning of the next period have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
             if !take(period, frame(machine, surfaces, period, offsets.as_ref()))? {

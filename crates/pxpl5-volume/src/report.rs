@@ -211,7 +211,7 @@ impl Volume {
         let stats = &self.frame.stats;
         let planes = &self.frame.planes;
         let settings = &self.settings;
-        // Time model and fragment counts are those of a GPU.
+        // The time model and the fragment counts apply only to a GPU.
         let fragments = self.bounds.is_none().then_some(stats);
         let time = self.bounds.is_none().then(|| self.time());
         VolumeReport {

@@ -7,7 +7,7 @@ use crate::error::{SpatialError, require};
 ///
 /// The size of the matrix, 8 x 8, is assumed (2, 4 and 16 are allowed). The threshold of a matrix element M is
 /// `floor((2 M + 1) 255 / (2 n^2))`. A bit is set if the channel exceeds the threshold. The value 0 lights no pixels,
-/// and 255 lights all. The value c lights `round(n^2 c / 255)` of `n^2` pixels.
+/// and 255 lights all pixels. The value c lights `round(n^2 c / 255)` of `n^2` pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halftone {
     size: u32,

@@ -156,7 +156,7 @@ impl Header {
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
         let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
-        // The hash comes last, because a key tells more.
+        // The hash comes last, because the name of a key is more helpful in an error.
         let pairs = [
             ("schema", self.schema.clone(), found.schema.clone()),
             ("version", self.version.clone(), found.version.clone()),

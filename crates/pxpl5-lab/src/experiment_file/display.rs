@@ -88,7 +88,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         set(config.as_mut(), key, path, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
-        // The message names the number of the table; the place is that of the key which sets it.
+        // The message names the number of the table; the place is the place of the key that sets this number.
         let reason = error.to_string();
         let named = given.iter().find(|(key, ..)| reason.contains(&format!(".{}:", key.parameter)));
         let (_, path, setting) = named.unwrap_or(first);

@@ -153,7 +153,7 @@ impl Pipeline for Frameless {
         let observation = record.observation();
         let video = display.video();
         let last = last_blocks(&observation.arrivals);
-        // An update is complete when as many blocks have arrived as the largest update has.
+        // An update is complete when its number of arrived blocks equals the number of blocks of the largest update.
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
@@ -168,7 +168,7 @@ impl Pipeline for Frameless {
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
-        // Updates may be shown in another order than that of their numbers.
+        // The order in which updates are shown may differ from the order of their numbers.
         times.sort_by_key(|times| (times.shown_at, times.picture));
         times
     }

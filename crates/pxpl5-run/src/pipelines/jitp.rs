@@ -120,7 +120,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
-    // Slaves have the same list and views, so the simulator transforms each field once for all of them.
+    // Slaves have the same list and views, so the simulator transforms each field once for all slaves.
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
         let gp = machine.processor(*node, Priority::Foreground);

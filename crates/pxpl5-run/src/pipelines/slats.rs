@@ -219,7 +219,7 @@ impl Pipeline for Slats {
             let whole = copied.regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
             let in_its_period = whole && copied.at <= record.tick(field.next());
-            // Under a backup, the swaps tell in which period the picture was shown.
+            // Under a backup, the swaps determine in which period the picture was shown.
             let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
             let picture_end = match (&backup, shown) {
                 (None, _) => PictureResult::of(in_its_period, !late.contains(&field)),

@@ -173,8 +173,8 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        // The molecules are half as high as wide, so the head can be nearer than it is to a ball. They then fill the
-        // width of the view.
+        // The molecules are half as high as wide, so the head can be nearer than it is to a ball. The molecules then
+        // fill the width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
         path: Vec::new(),
     };

@@ -10,7 +10,7 @@ use crate::trig;
 /// Generates a sphere of `count` triangles. `count` must be even and at least
 /// [`crate::config::LEAST_SPHERE_TRIANGLES`].
 pub(super) fn scene(count: u32) -> Scene {
-    // Add the parallels from pole to pole, and join each with the one above.
+    // Add the parallels from pole to pole, and join each with the parallel above.
     let rings = rings(count);
     let mut mesh = Mesh::default();
     let top = push(&mut mesh, DVec3::Y);

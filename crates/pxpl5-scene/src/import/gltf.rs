@@ -450,7 +450,7 @@ impl Corners<'_> {
     ///
     /// Fails if a vertex does not exist.
     fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], LoadError> {
-        // The order of the corners is that of section 3.7.2.1 of the specification.
+        // The corners have the order that section 3.7.2.1 of the specification defines.
         let corners = match self.mode {
             Mode::TriangleStrip => [n, n + 1 + n % 2, n + 2 - n % 2],
             Mode::TriangleFan => [n + 1, n + 2, 0],

@@ -93,7 +93,7 @@ pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option
 
 fn batch(planes: &BitPlanes, first: u32, slices: u32, tile: u32, grid: &TileGrid) -> BatchMessages {
     let size = planes.size();
-    // A tile is sent for every slice of the batch if it is occupied in any of them.
+    // A tile is sent for every slice of the batch if the tile is occupied in any of these slices.
     let is_lit = |number: &u32| (first..first + slices).any(|k| has_light(planes.slice(k), size, grid, *number));
     let lit: Vec<u32> = (0..grid.tiles()).filter(is_lit).collect();
     let of_tile = |slice: u32, number: u32| TileMessage {

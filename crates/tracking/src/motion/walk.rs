@@ -54,8 +54,8 @@ impl Walk {
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
     }
 
-    /// Returns the same walk with a head that also looks around. The glances are those of [`Synthetic::recorded_use`]
-    /// with this seed.
+    /// Returns the same walk with a head that also looks around. The glances come from [`Synthetic::recorded_use`] with
+    /// this seed.
     #[must_use]
     pub fn with_glances(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));

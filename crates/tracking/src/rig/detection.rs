@@ -45,7 +45,7 @@ impl Detector {
         if !report.pose.is_finite() {
             return false;
         }
-        // A crossing changes the sign of x. The velocity method compares the height with that of the last report.
+        // A crossing changes the sign of x. The velocity method compares the height with the height in the last report.
         let x = report.pose.position.x;
         let height = report.pose.position.y;
         let positive = match self.how {

@@ -361,7 +361,7 @@ impl Pipeline for FacePipeline {
             return self.plug_ideal_source(machine, setup);
         }
         let config = self.config(machine, setup.pixels)?;
-        // All slaves share recent views, because each of them transforms for the same faces.
+        // All slaves share recent views, because each slave transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
         let list = Arc::new(list);
