@@ -28,7 +28,8 @@ pub(crate) struct Batch {
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,
-    /// Nonzero for a footprint with texels on other faces. The address unit computes such footprints one by one.
+    /// Nonzero for a footprint (four texels) with texels on other faces. The address unit computes such footprints one
+    /// by one.
     leaves: Each<i32>,
     is_left: bool,
     met: Met,
@@ -64,17 +65,17 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// Returns the upper left texels of those footprints that lie on one face.
+    /// Returns the upper left texels of those footprints (four texels) that lie on one face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }
 
-    /// Returns true if the footprint of a pixel has texels on other faces.
+    /// Returns true if the footprint of a pixel (its four texels) has texels on other faces.
     pub(crate) const fn leaves(&self, pixel: usize) -> bool {
         self.leaves[pixel] != 0
     }
 
-    /// Returns true if any footprint of the group has texels on other faces.
+    /// Returns true if any footprint (four texels) of the group has texels on other faces.
     pub(crate) const fn is_left(&self) -> bool {
         self.is_left
     }
@@ -184,7 +185,7 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
 }
 
-/// Interpolates the four colours of each footprint in a group.
+/// Interpolates the four colours of each footprint (four texels) in a group.
 ///
 /// `reach` is the distance in texels from a row to the next, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]

@@ -23,7 +23,8 @@ use std::cell::Cell;
 pub struct LookStats {
     /// Number of pixels whose footprint (its four texels) has a texel on another face.
     pub split: u64,
-    /// Number of pixels whose footprint has two texels in one bank and therefore needs a second access.
+    /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
+    /// access.
     pub conflicts: u64,
 }
 

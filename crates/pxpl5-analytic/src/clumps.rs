@@ -4,7 +4,7 @@ use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes TRANSFORM and RENDER of all clumps of a field.
+/// Computes TRANSFORM and RENDER of all clumps (groups of triangles) of a field.
 ///
 /// Returns two times of the last clump: when the clump was accepted, and when the processor had handed the clump over
 /// for sending.
@@ -64,7 +64,7 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that sends a region's part of a clump.
+    /// Returns the message that sends a region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
@@ -84,7 +84,7 @@ struct Clump<const N: usize> {
 }
 
 impl<const N: usize> Clump<N> {
-    /// Returns the first clump of a field.
+    /// Returns the first clump (group of triangles) of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
@@ -103,7 +103,7 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times of the clumps that are being sent.
+/// Times of the clumps (groups of triangles) that are being sent.
 struct Chain<const N: usize> {
     /// Time at which the processor has finished its latest work.
     cpu: Times<N>,
@@ -118,7 +118,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump. The GP's port sends on several channels at a time.
+    /// Sends the messages of one clump (group of triangles). The GP's port sends on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);

@@ -61,7 +61,7 @@ pub struct SlatsModel {
 /// Times of a field, in nanoseconds after the retrace at which the field's view was sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// Time at which the last clump was accepted.
+    /// Time at which the last clump (group of triangles) was accepted.
     pub rendered_ns: f64,
     /// Copy of the top regions, or of all regions if copies are not split.
     pub top: CopyTimes,
@@ -193,7 +193,7 @@ impl SlatsModel {
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// Returns the TRANSFORM time of a clump of `triangles` triangles, for both eyes, in nanoseconds.
+    /// Returns the TRANSFORM time of a clump (group) of `triangles` triangles, for both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

@@ -50,7 +50,7 @@ pub(super) struct Clumps {
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
+    /// Creates clumps (groups) of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         // Distribute the triangles evenly over the GPs.
@@ -69,7 +69,7 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// Creates clumps from an experiment's scene, as seen in its first view.
+    /// Creates clumps (groups of primitives) from an experiment's scene, as seen in its first view.
     ///
     /// # Errors
     ///
@@ -117,7 +117,8 @@ impl Clumps {
 /// Number of field regions of one eye that lie side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
+/// Sends all clumps (groups of primitives) to the renderers. `arrays` holds the state of the renderers, before and
+/// after the call.
 ///
 /// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received the
 /// reports of all other GPs about their last clumps, and is free.
@@ -308,7 +309,7 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until a clump produces messages, or until no clump is left.
+    /// Transforms clumps (groups of primitives) until a clump produces messages, or until no clump is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
             // The single clump buffer can be reused after all renderers have started to receive its content.
@@ -326,8 +327,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the messages of a clump. Each message selects a region and holds as many primitives as fit. If `clears`
-    /// is true, the first message to a region also clears the region.
+    /// Returns the messages of a clump (group of primitives). Each message selects a region and holds as many
+    /// primitives as fit. If `clears` is true, the first message to a region also clears the region.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -414,7 +415,7 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first GP has been notified that all clumps were accepted.
+    /// Returns the time at which the first GP has been notified that all clumps (groups of primitives) were accepted.
     ///
     /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {

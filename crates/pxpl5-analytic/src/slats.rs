@@ -24,7 +24,7 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field in the steady state, for the given clumps.
+    /// Returns the times of a field in the steady state, for the given clumps (groups of triangles).
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -86,8 +86,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the last clump was accepted, and `cpu` the time at
-/// which the first GP is free.
+/// Computes the copies of a field. `rendered` is the time at which the last clump (group of triangles) was accepted,
+/// and `cpu` the time at which the first GP is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],

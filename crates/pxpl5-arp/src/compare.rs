@@ -41,7 +41,7 @@ pub struct ComparedRow {
     pub saved_percent: f64,
     /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
-    /// Widths of the displayed tears, in texels. Null in JSON if no memories meet in a cut.
+    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no memories meet in a cut.
     pub tears: Option<Percentiles>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
     pub stretch: Option<Percentiles>,

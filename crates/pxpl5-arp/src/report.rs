@@ -29,15 +29,15 @@ pub struct Report {
     pub matrix_loads: Option<u64>,
     /// Number of matrices that were refused because they were not rotations. Null without a tracker.
     pub matrix_refused: Option<u64>,
-    /// Number of pixels whose footprint has a texel on another face. Null if no view was drawn.
+    /// Number of pixels whose footprint (its four texels) has a texel on another face. Null if no view was drawn.
     pub footprints_split: Option<u64>,
-    /// Number of pixels whose footprint has two texels in one memory bank. Null if no view was drawn.
+    /// Number of pixels whose footprint (its four texels) has two texels in one memory bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
     pub memories: Vec<MemoryReport>,
     /// Results of the policy that decides when each memory is drawn.
     pub priority: PriorityReport,
-    /// Widths of the tears where different memories meet, in texels (90 degrees divided by the texels of a face's
-    /// edge). Null if no memories meet.
+    /// Widths of the tears (gaps where different memories meet), in texels (90 degrees divided by the texels of a
+    /// face's edge). Null if no memories meet.
     pub tears_px: TearsReport,
     /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
     /// not include tracker and host.
@@ -97,7 +97,7 @@ pub struct PriorityReport {
     pub faces_per_primitive: Option<f64>,
 }
 
-/// Widths of the tears between memories.
+/// Widths of the tears: gaps in the view where different memories meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
     /// Widths that the tears would have without warping.

@@ -63,7 +63,7 @@ pub struct Settings {
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
     /// Rule by which the displacement by warping decreases with the distance from the border to a slower memory.
-    /// [`Falloff::None`] disables warping, so cuts tear.
+    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
     /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,

@@ -4,7 +4,7 @@ use crate::content::{Content, angle};
 use crate::world::World;
 use serde::Serialize;
 
-/// Angles of the tears at vertices that several memories share, in one frame.
+/// Angles of the tears (gaps between memories) at vertices that several memories share, in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tears {
     /// Angles of all tears without warping, in radians. A tear's angle lies between the two directions in which two

@@ -44,10 +44,10 @@ pub struct WalkTally {
     pub redeals: u64,
     /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Angles of the tears at shared vertices, over all frames.
+    /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,
-    /// For each frame, the width in radians of the widest tear as displayed, and the index of its vertex. `None` if no
-    /// memories meet.
+    /// For each frame, the width in radians of the widest displayed tear (gap between two memories), and the index of
+    /// its vertex. `None` if no memories meet.
     pub widest: Vec<Option<(f64, u32)>>,
     /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,

@@ -122,8 +122,9 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0, and then a quarter
-    /// turn until the screen reaches the changed plane. Returns `None` if the volume was not drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0 (the first flash of a
+    /// turn), and then a quarter turn until the screen reaches the changed plane. Returns `None` if the volume was not
+    /// drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;

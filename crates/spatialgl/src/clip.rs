@@ -12,7 +12,7 @@ pub enum SliceClip {
     /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
     /// exact slice at the rim.
     Prism,
-    /// Each pass clips with two user clip planes. Each lobe of the double wedge has its own pass.
+    /// Each pass clips with two user clip planes. Each lobe (half) of the double wedge has its own pass.
     UserPlanes,
     /// The fragment program tests the product of the interpolated distances from both planes. This gives the exact
     /// volume in one pass.

@@ -358,7 +358,8 @@ fn walk_line(text: &mut String, walked: &NamedWalk) {
     );
 }
 
-/// Formats the width of a tear in texels. Widths below a millionth of a texel are rounding errors and count as 0.
+/// Formats the width of a tear (gap between two memories) in texels. Widths below a millionth of a texel are rounding
+/// errors and count as 0.
 fn texels(width: f64) -> String {
     if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") }
 }

@@ -63,7 +63,8 @@ pub struct Experiments {
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: cut with tears, cut and warped, uncut, and warped without cascade.
+    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
+    /// updates of faster memories (cascade).
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
@@ -136,7 +137,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the walk with tears for renderers of decreasing speed.
+/// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
 fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {

@@ -256,8 +256,8 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold of the image error, with the cell side and the tears that follow. The product of threshold and cell side
-/// is fixed, because it fits table 1.
+/// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
+/// threshold and cell side is fixed, because it fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold as text, in pixels of the display or texels of an ideal face.
@@ -266,9 +266,10 @@ pub struct ThresholdRow {
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear if each update is shown as soon as it is due, in pixels of the display.
+    /// Widest tear (gap between two memories) if each update is shown as soon as it is due, in pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear if the update of the slower memory is shown one frame of walking too late, in pixels of the display.
+    /// Widest tear (gap between two memories) if the update of the slower memory is shown one frame of walking too
+    /// late, in pixels of the display.
     pub frame_late_px: f64,
 }
 

@@ -412,8 +412,8 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 
 /// Returns the criterion by which the largest scene is found.
 ///
-/// If clumps go to all regions, the test scene has full-screen triangles. If clumps go only to touched regions, the
-/// test scene has small triangles.
+/// If clumps (groups of triangles) go to all regions, the test scene has full-screen triangles. If clumps go only to
+/// touched regions, the test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

@@ -78,7 +78,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
     ])
 }
 
-/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes.
+/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes (flashes).
 fn planes(views: &[SliceView]) -> Vec<Figure> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
