@@ -45,8 +45,8 @@ pub struct ComparedRow {
     pub tears: Option<Percentiles>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
     pub stretch: Option<Percentiles>,
-    /// Number of times that cells were assigned to memories anew. With the policy `objects`, number of times that an
-    /// object changed its memory.
+    /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`,
+    /// number of times that an object changed its memory.
     pub changes: u64,
     /// Number of retraces at which an update was incomplete, summed over all memories.
     pub missed: u64,

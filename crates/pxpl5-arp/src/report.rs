@@ -58,7 +58,7 @@ pub struct MemoryReport {
     pub updates_hz: f64,
     /// Mean number of frames between two updates of the memory. Null without updates.
     pub period_frames: Option<f64>,
-    /// Number of segments in the memory, averaged over frames.
+    /// Number of segments (parts of objects) in the memory, averaged over frames.
     pub segments: f64,
     /// Mean number of triangles per update. Null without updates.
     pub triangles: Option<f64>,
@@ -79,7 +79,8 @@ pub struct MemoryReport {
 /// Results of a policy, which decides when each memory is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorityReport {
-    /// Name of the policy that decides which segments are drawn in which frames: `full`, `objects` or `cells`.
+    /// Name of the policy that decides which segments (parts of objects) are drawn in which frames: `full`, `objects`
+    /// or `cells`.
     pub policy: &'static str,
     /// Largest accepted image error, in degrees. Null if the policy draws everything in every frame.
     pub theta_deg: Option<f64>,
@@ -91,7 +92,7 @@ pub struct PriorityReport {
     pub saved_percent: f64,
     /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Number of times that cells were assigned to memories anew. Null without cells.
+    /// Number of times that cells (squares of the floor) were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,
     /// Number of faces that a triangle covers, averaged over the last update of each memory. Null if no view was drawn.
     pub faces_per_primitive: Option<f64>,

@@ -6,7 +6,7 @@ use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
 use serde::{Deserialize, Serialize};
 
-/// The policy that decides which segments are drawn in which frames.
+/// The policy that decides which segments (parts of objects) are drawn in which frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PolicyKind {

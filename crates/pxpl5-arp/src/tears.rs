@@ -19,7 +19,7 @@ pub struct Tears {
     pub widest: Option<(f64, u32)>,
 }
 
-/// Returns for each segment the index of the memory that shows it, or `None`.
+/// Returns for each segment (part of an object) the index of the memory that shows the segment, or `None`.
 fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
     let mut holders = vec![None; world.segments.len()];
     for (memory, content) in shown.iter().enumerate() {

@@ -52,7 +52,8 @@ pub struct Setup {
     pub poses: Poses,
     /// For each structure of the scene, true if the structure moves by itself or with the head.
     pub moving: Arc<[bool]>,
-    /// Cells in which each structure lies. Empty unless the pipeline cut the scene into cells ([`Pipeline::cut`]).
+    /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
+    /// ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
     /// Record of the updates that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
@@ -140,8 +141,8 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         false
     }
 
-    /// Returns the scene in segments that are drawn at different times. Returns `None` if the host loads the scene
-    /// unchanged.
+    /// Returns the scene in segments (parts of objects) that are drawn at different times. Returns `None` if the host
+    /// loads the scene unchanged.
     ///
     /// # Errors
     ///

@@ -54,7 +54,7 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 pub struct CellAssignment {
     /// The home cell, which is the centre of all rings.
     pub home: Cell,
-    /// Side of a cell in metres.
+    /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
     /// Number of rings around the home cell that memory 0 holds.
     pub inner_rings: u64,
@@ -66,7 +66,7 @@ pub struct CellAssignment {
 }
 
 impl CellAssignment {
-    /// Returns the index of the memory that holds a cell.
+    /// Returns the index of the memory that holds a cell (square of the floor).
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
         let ring = self.home.ring(cell);

@@ -30,7 +30,7 @@ pub struct NamedWalk {
     pub report: Report,
 }
 
-/// A cell side fitted to one update rate of table 1.
+/// The side of a cell (square of the floor), fitted to one update rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Rules with which the cell side was fitted.
@@ -61,7 +61,7 @@ pub struct Experiments {
     pub interpretations: Interpretations,
     /// Thresholds of the image error, each with the cell side that fits table 1.
     pub thresholds: Vec<ThresholdRow>,
-    /// Number of segments into which the fitted cells cut the gallery.
+    /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
     /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
     /// updates of faster memories (cascade).

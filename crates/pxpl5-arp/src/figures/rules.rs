@@ -10,8 +10,8 @@ pub struct Rules {
     pub inner_rings: u64,
     /// Number of rings in a memory, divided by the number of rings in the next faster memory.
     pub ring_growth: u64,
-    /// True if distances are measured to cells that hold segments. False if distances are measured to the border of a
-    /// block of cells.
+    /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
+    /// to the border of a block of cells.
     pub to_held_cells: bool,
     /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,

@@ -1,4 +1,4 @@
-//! Policy `cells`: assigns the cells around the user to the display memories.
+//! Policy `cells`: assigns the cells (squares of the floor) around the user to the display memories.
 
 use super::plan::{Due, DuePolicy, Updates, place};
 use address_recalculation::priority::{Cell, Cells, Falloff, PriorityTiming};

@@ -52,7 +52,7 @@ pub struct FacePipeline {
     pub latch: Latch,
     /// Method of shading.
     pub shading: Shading,
-    /// For policies with cells: true if structures are cut at the borders of cells.
+    /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
     /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
     pub segmented: bool,
