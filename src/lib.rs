@@ -126,7 +126,7 @@
 //! All features are on by default. A crate that only runs experiments builds faster with `default-features = false`.
 //!
 //! Every number of the model has a unit, a provenance (published, derived, assumed) and a source.
-//! [`MachineConfig::parameters`] lists all of them.
+//! [`MachineConfig::parameters`] lists all these numbers.
 //!
 //! **Not modelled:** see the data sheet at the beginning of each board's crate. ACCURACY.md lists the results that
 //! differ from the papers.

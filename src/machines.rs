@@ -1,4 +1,4 @@
-//! Machines, their boards and displays, their parameters, and what was observed of them.
+//! Machines, their boards and displays, their parameters, and records of their boards during a run.
 
 /// ```
 /// use pxpl5::{MachineConfig, Parameter};

@@ -180,7 +180,8 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
             assert_eq!(first, last, "{told}: swapped while {:?} came", arrival.target.region);
             (u64::from(arrival.target.buffer) + first as u64) % 2
         });
-        // The buffers take turns, so the number of swaps tells which buffer is hidden during all regions of a frame.
+        // The buffers take turns, so the number of swaps determines which buffer is hidden during all regions of a
+        // frame.
         let which: Vec<u64> = written.collect();
         assert!(which.iter().all(|buffer| *buffer == which[0]), "{told}: {surface:?}");
     }
@@ -192,7 +193,8 @@ fn the_rules_of_the_ring_hold_and_every_region_arrives_on_random_machines() {
     let (mut ran, mut swapped) = (0, 0);
     each_case(60, SHORT, |experiment, told| {
         let (outcome, error) = outcome(experiment, told);
-        // A machine that a pipeline cannot use must be refused with a reason. It must never come to a deadlock.
+        // A machine that a pipeline cannot use must be refused with a reason. Such a machine must never come to a
+        // deadlock.
         assert!(!matches!(error, Some(RunError::Deadlock { .. } | RunError::Ring { .. })), "{told}: {error:?}");
         assert_the_ring_is_a_ring(&outcome, told);
         assert_every_region_arrives_once(&outcome, told);

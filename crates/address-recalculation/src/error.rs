@@ -20,7 +20,7 @@ pub enum ArpError {
     /// A file of viewing vectors is invalid.
     #[error("arp.lens table, line {line}: expected {expected}, found {found}")]
     Table {
-        /// Line of the file, counted from 1. If data are missing, it is the line after the last one.
+        /// Line of the file, counted from 1. If data are missing, the number is the line after the last line.
         line: usize,
         /// Description of the expected content.
         expected: String,

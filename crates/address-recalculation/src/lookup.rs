@@ -1,4 +1,5 @@
-//! The fast model of pixel computation. It processes groups of pixels and gives the same bits as the reference model.
+//! The fast model of pixel computation, which processes groups of pixels and gives the same bits as the reference
+//! model.
 //!
 //! A picture reads each texel several times. The depths of a texel in all memories are compared only once, when a pixel
 //! first needs the texel ([`Composed`]). Addresses and weights are computed for a group of pixels together
@@ -22,7 +23,8 @@ use std::cell::Cell;
 pub struct LookStats {
     /// Number of pixels whose footprint (its four texels) has a texel on another face.
     pub split: u64,
-    /// Number of pixels whose footprint has two texels in one bank and therefore needs a second access.
+    /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
+    /// access.
     pub conflicts: u64,
 }
 
@@ -253,7 +255,7 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// Number of consecutive texels for which the nearest memory is selected at once. It divides 128.
+/// Number of consecutive texels for which the nearest memory is selected at once. The number is a divisor of 128.
 const PIECE: usize = 32;
 
 /// For each texel, the colour of the nearest memory, computed when a pixel first needs it.

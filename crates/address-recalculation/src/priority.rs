@@ -20,7 +20,7 @@
 //!   together.
 //! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The ring of a cell around the home
 //!   cell determines the cell's memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further
-//!   memory holds `ring_growth` times as many rings as the previous one.
+//!   memory holds `ring_growth` times as many rings as the previous memory.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
@@ -33,8 +33,8 @@
 //! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the two
 //!   eye positions. The vertex then has the same direction and depth in both memories.
 //!
-//! Units are metres, seconds and radians unless a name says degrees. Axes are right-handed with y up. Results are
-//! bit-identical on every host.
+//! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
+//! are bit-identical on every host.
 //!
 //! # Not here
 //!

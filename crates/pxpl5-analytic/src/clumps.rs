@@ -4,10 +4,10 @@ use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes TRANSFORM and RENDER of all clumps of a field.
+/// Computes TRANSFORM and RENDER of all clumps (groups of triangles) of a field.
 ///
-/// Returns two times for the last clump: the time at which it was accepted, and the time at which the processor had
-/// handed it over for sending.
+/// Returns two times of the last clump: when the clump was accepted, and when the processor had handed the clump over
+/// for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -64,7 +64,7 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that sends a region's part of a clump.
+    /// Returns the message that sends a region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
@@ -72,7 +72,7 @@ impl<const N: usize> MessageCosts<N> {
 }
 
 /// A clump of triangles, and its message to each region. The message selects the region and draws triangles. In the
-/// field's first clump it also clears the region.
+/// field's first clump, the message also clears the region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
@@ -84,7 +84,7 @@ struct Clump<const N: usize> {
 }
 
 impl<const N: usize> Clump<N> {
-    /// Returns the first clump of a field.
+    /// Returns the first clump (group of triangles) of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
@@ -93,7 +93,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns the clump of `triangles` triangles that follows this one.
+    /// Returns the clump of `triangles` triangles that follows this clump.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -103,7 +103,7 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times of the clumps that are being sent.
+/// Times of the clumps (groups of triangles) that are being sent.
 struct Chain<const N: usize> {
     /// Time at which the processor has finished its latest work.
     cpu: Times<N>,
@@ -118,7 +118,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump. The GP's port sends on several channels at a time.
+    /// Sends the messages of one clump (group of triangles). The GP's port sends on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -159,7 +159,7 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Records the time from which the earliest channel is free again, and sorts it among the times of the other
+    /// Records the time from which the earliest channel is free again, and sorts this time among the times of the other
     /// channels.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {

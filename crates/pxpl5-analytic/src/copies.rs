@@ -41,8 +41,8 @@ impl Queue {
     /// Returns the same copies in an order that alternates between left and right, as long as copies of both sides
     /// remain.
     ///
-    /// If `begins_right` is true and a right copy exists, the first copy is a right one. Otherwise the first copy is on
-    /// the same side as before.
+    /// If `begins_right` is true and a right copy exists, the first copy goes to the right frame buffer. Otherwise the
+    /// first copy is on the same side as before.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];

@@ -61,7 +61,7 @@ pub struct SlatsModel {
 /// Times of a field, in nanoseconds after the retrace at which the field's view was sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// Time at which the last clump was accepted.
+    /// Time at which the last clump (group of triangles) was accepted.
     pub rendered_ns: f64,
     /// Copy of the top regions, or of all regions if copies are not split.
     pub top: CopyTimes,
@@ -157,7 +157,7 @@ impl SlatsModel {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Counts the pictures that are due and those that are shown, if all fields have the times `times`.
+    /// Counts the pictures that are due and the pictures that are shown, if all fields have the times `times`.
     ///
     /// A field begins at the first retrace after the commands of the previous field are finished.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
@@ -187,13 +187,13 @@ impl SlatsModel {
         queues
     }
 
-    /// Returns the times of a field, and whether its copies meet their deadlines.
+    /// Returns the times of a field. Also determines if the field's copies meet their deadlines.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// Returns the TRANSFORM time of a clump of `triangles` triangles, for both eyes, in nanoseconds.
+    /// Returns the TRANSFORM time of a clump (group) of `triangles` triangles, for both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

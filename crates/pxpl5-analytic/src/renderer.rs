@@ -33,7 +33,7 @@ impl Cost {
 /// Times of several configurations in nanoseconds. Each configuration has a lane, and operations treat each lane
 /// separately.
 ///
-/// The alignment is that of a vector register. A vector that crosses a cache line would take twice as long.
+/// The values are aligned as vector registers are. A vector that crosses a cache line would take twice as long.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -119,8 +119,8 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message of equal commands after a head of other commands. It holds all times that do not depend on when the
-/// message arrives.
+/// A message of equal commands after a head of other commands. The type holds all times that do not depend on the
+/// arrival of the message.
 ///
 /// All other times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
 /// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
@@ -139,16 +139,17 @@ pub(super) struct Commands<const N: usize> {
     each: Times<N>,
     /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first equal command to the end of the last one. Execution or the arrival of words
+    /// Time from the start of the first equal command to the end of the last command. Execution or the arrival of words
     /// limits it.
     drawing: Times<N>,
     /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.
     ///
-    /// The FIFO has room when a certain command has started. This command contains the word that is one FIFO depth
-    /// before the last word. The value is `f64::MIN` if that command belongs to the previous message.
+    /// The FIFO has room when a certain command has started: the command that contains the word one FIFO depth before
+    /// the last word. The value is `f64::MIN` if this command belongs to the previous message.
     room_after: Times<N>,
-    /// Position of the command that must have started before the FIFO has room for the last word. It is counted back
-    /// from the end of the previous message. Infinite if that command belongs to the same message.
+    /// Position of the command that must have started before the FIFO has room for the last word. The position is
+    /// counted back from the end of the previous message. The value is infinite if the command belongs to the same
+    /// message.
     room_before: Times<N>,
 }
 
@@ -189,8 +190,8 @@ impl<const N: usize> Commands<N> {
     /// Returns the time until the FIFO has room for this message's last word, if this message follows the message
     /// `before`.
     ///
-    /// The time counts from the start of the first command of `before`. It is negative infinity if this message needs
-    /// no room that `before` occupies.
+    /// The time counts from the start of the first command of `before`. The time is negative infinity if this message
+    /// needs no room that `before` occupies.
     #[inline(always)]
     pub(super) fn room_behind(&self, before: &Self) -> Times<N> {
         Times::each(|i| {

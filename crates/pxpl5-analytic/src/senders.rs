@@ -50,7 +50,7 @@ pub(super) struct Clumps {
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
+    /// Creates clumps (groups) of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         // Distribute the triangles evenly over the GPs.
@@ -69,7 +69,7 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// Creates clumps from an experiment's scene, as seen in its first view.
+    /// Creates clumps (groups of primitives) from an experiment's scene, as seen in its first view.
     ///
     /// # Errors
     ///
@@ -117,10 +117,11 @@ impl Clumps {
 /// Number of field regions of one eye that lie side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
+/// Sends all clumps (groups of primitives) to the renderers. `arrays` holds the state of the renderers, before and
+/// after the call.
 ///
-/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received all
-/// reports of this and is free.
+/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received the
+/// reports of all other GPs about their last clumps, and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -158,7 +159,7 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
     /// the last word has entered the FIFO.
     ///
-    /// A word enters when the word that is one FIFO depth ahead of it has left. The words of a command leave when the
+    /// A word enters the FIFO when the word one FIFO depth before has left. The words of a command leave when the
     /// command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
@@ -250,7 +251,7 @@ impl<'a> Ring<'a> {
         // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
-        // With several GPs, the first one clears all regions and then sends the view.
+        // With several GPs, the first GP clears all regions and then sends the view.
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
@@ -283,7 +284,7 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions. Returns the time at which the last one was accepted.
+    /// Sends the messages that clear all regions. Returns the time at which the last message was accepted.
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
@@ -308,7 +309,7 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until one of them produces messages, or until no clump is left.
+    /// Transforms clumps (groups of primitives) until a clump produces messages, or until no clump is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
             // The single clump buffer can be reused after all renderers have started to receive its content.
@@ -326,8 +327,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the messages of a clump. Each message selects a region and holds as many primitives as fit. If `clears`
-    /// is true, the first message to a region also clears the region.
+    /// Returns the messages of a clump (group of primitives). Each message selects a region and holds as many
+    /// primitives as fit. If `clears` is true, the first message to a region also clears the region.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -414,7 +415,7 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first GP knows that all clumps have been accepted.
+    /// Returns the time at which the first GP has been notified that all clumps (groups of primitives) were accepted.
     ///
     /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {

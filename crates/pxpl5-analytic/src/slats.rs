@@ -24,7 +24,7 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field in the steady state, for the given clumps.
+    /// Returns the times of a field in the steady state, for the given clumps (groups of triangles).
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -35,7 +35,7 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field for many machines, in their order. They are identical to the times of
+    /// Returns the times of a field for many machines, in their order. The times are identical to the results of
     /// [`field`](Self::field).
     ///
     /// Sixteen consecutive machines are computed together if they have one GP, equal numbers of renderers and channels,
@@ -58,7 +58,7 @@ impl SlatsModel {
 /// Number of configurations computed together. Their times fill two registers of 512 bits, or four registers of 256
 /// bits.
 ///
-/// Each computing step depends on the previous one. Two registers therefore take little more time than one.
+/// Each computing step depends on the previous step. Two registers therefore take little more time than one register.
 const TOGETHER: usize = 16;
 
 /// Computes fields of 16 machines with the widest vector instructions of the host's processor.
@@ -67,7 +67,7 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Computes a field on each of `N` machines. All have one GP and equal values of [`SlatsModel::structure`].
+/// Computes a field on each of `N` machines. All machines have one GP and equal values of [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -86,8 +86,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the last clump was accepted, and `cpu` the time at
-/// which the first GP is free.
+/// Computes the copies of a field. `rendered` is the time at which the last clump (group of triangles) was accepted,
+/// and `cpu` the time at which the first GP is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -150,7 +150,7 @@ const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
 /// Returns the number of fields that an experiment needs. Returns `None` if pictures are late, because in the steady
-/// state all of them are equally late.
+/// state all pictures are equally late.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let (_, times) = steady_field(experiment).ok()?;
     times.in_time.then_some(FIELDS_BEFORE + 1)

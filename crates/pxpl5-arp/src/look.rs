@@ -10,7 +10,7 @@ use image::{Rgb, RgbImage};
 /// Cube faces of all memories, drawn only when a view needs them.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Cube faces of each display memory. They are empty before the memory's first update.
+    /// Cube faces of each display memory. The faces are empty before the memory's first update.
     pub memories: Vec<FaceSet>,
     /// Counts of the triangles drawn into the faces.
     pub drawing: Drawing,

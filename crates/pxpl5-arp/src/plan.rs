@@ -51,7 +51,7 @@ pub struct Plan {
     said: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. It becomes an angle once the display's resolution is known.
+/// A threshold in pixels or texels. The threshold becomes an angle when the display's resolution is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
     /// Threshold in pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
@@ -158,7 +158,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Self::set`]. Returns [`WalkError::Value`] without an equals sign.
+    /// Fails in the same cases as [`Self::set`]. Returns [`WalkError::Value`] if the text has no equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), WalkError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),

@@ -80,8 +80,8 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` tells the user how
-    /// to reduce the work.
+    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` is a text for the
+    /// user: how to reduce the work.
     ///
     /// # Errors
     ///
@@ -91,8 +91,8 @@ impl BudgetArgs {
         self.admit_estimate(study.estimate(threads), advice)
     }
 
-    /// Returns an error if the estimate of a command exceeds the budget. `advice` tells the user how to reduce the
-    /// work.
+    /// Returns an error if the estimate of a command exceeds the budget. `advice` is a text for the user: how to reduce
+    /// the work.
     ///
     /// # Errors
     ///
@@ -156,7 +156,7 @@ impl BudgetArgs {
     /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
     /// is the cost of the fraction `part` of this part. The remaining fields are assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
-        // Short runs and small ones say too little about the rest.
+        // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > MIN_EXTRAPOLATED_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")

@@ -10,8 +10,8 @@
 //!
 //! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
 //!
-//! If simulated renderers of Pixel-Planes 5 draw the volume, it takes `PLANES` times as long and `PLANES_BYTES` more
-//! memory.
+//! If simulated renderers of Pixel-Planes 5 draw the volume, the volume takes `PLANES` times as long and `PLANES_BYTES`
+//! more memory.
 //!
 //! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
 //! FRAME_S frames primitives` seconds.

@@ -123,7 +123,7 @@ fn one_text(machine: &MachineConfig) -> String {
         let _ = writeln!(text, "{pipeline:<42} {said}");
     }
     text.push('\n');
-    // Parameters of the machine come first, those of tracking second.
+    // Parameters of the machine come first, parameters of tracking second.
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), on every machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));

@@ -86,7 +86,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         print(&text((&plan, &results, report), args.explain, written))?;
         print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
     }
-    // The exit code tells scripts that the report lacks a latency.
+    // The exit code shows scripts that the report lacks a latency.
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),

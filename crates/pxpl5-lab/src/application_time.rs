@@ -52,8 +52,8 @@ pub struct ApplicationTime {
     pub figures: Vec<Spread>,
 }
 
-/// Simulates the fly-throughs for all application times at the analytic level. Interpretation, seeds and frames are
-/// those of the given bench (common settings).
+/// Simulates the fly-throughs for all application times at the analytic level. Interpretation, seeds and frames come
+/// from the given bench (common settings).
 ///
 /// # Errors
 ///

@@ -31,8 +31,8 @@
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
 //! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats
-//! the messages are those of display fields. The result is the mean over the three scenes. `token entry` is the
-//! additional time to send a bin for each entry in the bin. It is the slope of a least-squares fit over all bins.
+//! the messages of display fields count. The result is the mean over the three scenes. `token entry` is the additional
+//! time to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -65,9 +65,9 @@ const VIEWS: u64 = 4;
 /// Time between two successive head poses in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Half the side of the square that a triangle covers at a distance of 1 m, in metres. Used to measure the clipper. The
-/// corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any size beyond the guard
-/// band would do.
+/// Half the side of the square that a triangle covers at a distance of 1 m, in metres. The measurement of the clipper
+/// uses such triangles. The corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any
+/// size beyond the guard band has the same effect.
 const CLIPPED_M: f32 = 2.0;
 
 /// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).
@@ -228,7 +228,7 @@ impl CodeTimes {
     }
 }
 
-/// Returns the mean of the values, or 0 if there are none.
+/// Returns the mean of the values, or 0 if there are no values.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
     sum / f64::max(n, 1.0)

@@ -60,7 +60,7 @@ const SETTINGS: [&str; 17] = [
     "fields",
 ];
 
-/// First parts of the paths that are not compared, because their values say nothing about the simulated machine.
+/// First parts of the paths that are not compared, because their values do not describe the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
 /// Compares two reports as JSON, such as the contents of two files `report.json`.

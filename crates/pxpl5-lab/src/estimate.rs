@@ -252,8 +252,8 @@ pub enum Study {
     },
 }
 
-/// CPU seconds of all figures. This value and the next ones are fitted to measurements with the build profile `dist` on
-/// one core of 3 GHz (25 November 2026).
+/// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
+/// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
 /// CPU seconds of one frame of an application scene. `READINGS_BEST` is the additional fraction for each interpretation
 /// that is simulated with events.
@@ -290,7 +290,7 @@ impl Study {
         match self {
             Self::Figures => FIGURES_S,
             Self::Readings { seeds, frames, best } => {
-                // The aircraft has all seeds, the molecules a third of them, the head a fifth.
+                // The aircraft has all seeds, the molecules a third of the seeds, the head a fifth.
                 let frames = frames * (seeds + seeds.div_ceil(3) + seeds.div_ceil(5));
                 READINGS_FRAME_S * frames as f64 * (1.0 + READINGS_BEST * best as f64)
             }

@@ -68,7 +68,8 @@ pub(crate) struct Setting {
 /// Name of the head motion that takes its seed from the run.
 const SYNTHETIC: &str = "synthetic";
 
-/// The settings of an experiment by path. Each was read, but their combination is not yet checked.
+/// The settings of an experiment by path. Each setting was read, but the combination of all settings is not yet
+/// checked.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     registry: Arc<Registry>,
@@ -182,8 +183,8 @@ impl ExperimentFile {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Provides the contents of a model file or recording from memory. They are used wherever a setting names the file
-    /// `name`. Hosts without a file system, such as browsers, need this function.
+    /// Provides the contents of a model file or recording from memory. The contents are used wherever a setting names
+    /// the file `name`. Hosts without a file system, such as browsers, need this function.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
@@ -223,7 +224,8 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Returns true if each seed moves the head otherwise: the head has the synthetic motion without a seed of its own.
+    /// Returns true if the head moves differently for each seed. This is the case for the synthetic motion without a
+    /// seed of its own.
     ///
     /// # Errors
     ///
@@ -281,7 +283,7 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Copies all settings of another file into this one. They override the current settings.
+    /// Copies all settings of another file into this file. The copied settings override the current settings.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;

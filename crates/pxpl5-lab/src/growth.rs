@@ -115,7 +115,7 @@ pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
     all.map(|(triangles, (n_gps, n_renderers))| run(triangles, n_gps, n_renderers)).collect()
 }
 
-/// Result of an application scene on a machine preset. The papers do not say which machine they used.
+/// Result of an application scene on a machine preset. The papers do not state which machine drew the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Application {
     /// Name of the built-in scene.

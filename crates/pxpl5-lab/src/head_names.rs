@@ -28,7 +28,7 @@ pub enum MotionError {
         what: &'static str,
         /// The unknown name.
         found: String,
-        /// The names that are known, as text.
+        /// List of the accepted names, as text.
         expected: &'static str,
     },
     /// The text after the colon is not a number, or the number is out of range.

@@ -15,8 +15,8 @@ pub struct Workstation {
 }
 
 impl Workstation {
-    /// Maximum number of regions that wait for a worker thread. More would only use memory. If the queue is full, the
-    /// simulating thread computes the pixels of the next region itself.
+    /// Maximum number of regions that wait for a worker thread. More waiting regions would only use memory. If the
+    /// queue is full, the simulating thread computes the pixels of the next region itself.
     pub const WAITING_REGIONS: usize = 256;
 
     /// Creates a host with one worker thread for each core.

@@ -171,7 +171,8 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
 /// requested.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
-/// Paths of the machine parameters without a source. They vary for figures that need a simulation with events.
+/// Paths of the machine parameters without a source. These parameters vary for figures that need a simulation with
+/// events.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
 /// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both

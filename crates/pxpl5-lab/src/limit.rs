@@ -1,7 +1,7 @@
 //! Searches for limits: the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level). It
-//! only gives hints: the size at which the search starts, and sizes that may miss the goal.
+//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level).
+//! This formula only gives hints: the size at which the search starts, and sizes that may miss the goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
-//! triangles) costs as many messages as a full one. The search therefore also tries sizes below the result of the
+//! triangles) costs as many messages as a full clump. The search therefore also tries sizes below the result of the
 //! bisection, and the smallest miss counts. [`most`] states the guarantee.
 
 mod over;
@@ -117,8 +117,8 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on it. A scene that does
-    /// not fit into a board's memory, or is never shown, misses the goal.
+    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. A scene
+    /// that does not fit into a board's memory, or is never shown, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
         self.search_with(|_| {})
     }
@@ -142,8 +142,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Returns an error if the goal is an update rate and the scene has no measurable one. A display with cube faces
-    /// redraws so little of some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube
+    /// faces redraws so little of some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
         let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
         let outcome = self.experiment(1)?.run()?;

@@ -28,7 +28,8 @@ pub struct ManifestEntry {
 pub struct Manifest {
     schema: String,
     version: String,
-    /// Commit from which the writing program was built, if known. Manifests of earlier programs have none.
+    /// Commit from which the writing program was built, if that program stated the commit. Manifests of earlier
+    /// programs have no commit.
     #[serde(default)]
     commit: Option<String>,
     command: String,
@@ -163,7 +164,7 @@ impl Manifest {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Adds all files of another manifest to this one.
+    /// Adds all files of another manifest to this manifest.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }
@@ -191,8 +192,8 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Declares that this manifest replaces the previous one (`before`). Returns the old files to remove. These are
-    /// files that the new run does not write and that have not changed since they were written.
+    /// Declares that this manifest replaces the previous manifest (`before`). Returns the old files to remove. These
+    /// are files that the new run does not write and that have not changed since they were written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));

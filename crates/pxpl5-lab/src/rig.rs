@@ -1,11 +1,11 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and light,
-//! and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not full,
-//! and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the line,
-//! so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the line
-//! when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when it detects the pendulum's low point. Frames alternate between dark and
+//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not
+//! full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the
+//! line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the
+//! line when it samples the pose of a frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
@@ -44,8 +44,8 @@ pub struct Rig {
     pub passes: usize,
 }
 
-/// Default number of low points to measure. They fall anywhere in a field. With this number, the mean wait for a
-/// retrace is known to a fifth of a field.
+/// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
+/// wait for a retrace is known to a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {
@@ -93,7 +93,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd ones a dark frame.
+        // Even sightings make a light frame, odd sightings a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
@@ -116,7 +116,7 @@ impl Rig {
     }
 }
 
-/// Returns an error for a pipeline in which a photodiode on the screen cannot tell when a frame appears.
+/// Returns an error for a pipeline in which a photodiode on the screen cannot detect the appearance of a frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -234,8 +234,8 @@ impl Photodiode {
     }
 
     /// Returns the sample of two periods ago, if no message has been on the ring since the beginning of that period.
-    /// The same line was lit then, and the screen of an idle machine does not change. (The ring is read one period
-    /// later than the screen.)
+    /// The display lit the same line in that period, and the screen of an idle machine does not change. The ring is
+    /// read one period later than the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -267,7 +267,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
 }
 
 /// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
-/// Control the host does so when SEND begins. Under Slats the graphics processor does so when a field begins.
+/// Control this is the time at which the host begins SEND. Under Slats it is the time at which a field begins on the
+/// graphics processor.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks

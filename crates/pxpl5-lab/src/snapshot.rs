@@ -1,14 +1,14 @@
 //! Saves and restores a run at the boundary between two display fields.
 //!
-//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. It does not hold the state of the boards, because
-//! their programs are suspended `async` functions, whose state cannot be serialized. Instead, the checkpoint holds the
-//! data that determine this state: the experiment, the identity of the scene, and the field. It also holds the trace hash
-//! and the number of events, which identify the state.
+//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. The checkpoint does not hold the state of the
+//! boards, because their programs are suspended `async` functions, whose state cannot be serialized. Instead, the
+//! checkpoint holds the data that determine this state: the experiment, the identity of the scene, and the field. The
+//! checkpoint also holds the trace hash and the number of events, which identify the state.
 //!
-//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. It then compares
-//! the hash and number of events with the saved ones, and continues the run. A restored run is therefore identical to
-//! the original run. Restoring takes as long as the original simulation up to that field (thousands of fields a second
-//! for small scenes).
+//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. The program
+//! then compares the hash and the number of events with the saved values, and continues the run. A restored run is
+//! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
+//! (thousands of fields a second for small scenes).
 //!
 //! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 
@@ -201,8 +201,8 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run is not the saved one, and
-    /// [`SnapshotError::Run`] if the experiment cannot run.
+    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run differs from the saved data,
+    /// and [`SnapshotError::Run`] if the experiment cannot run.
     pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, SnapshotError> {
         // A different experiment is refused before its run.
         self.check_scene(experiment.scene(), file)?;
@@ -280,7 +280,7 @@ impl Snapshot {
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
-    /// Compares the scene with the saved one.
+    /// Compares the scene with the saved scene.
     ///
     /// # Errors
     ///
@@ -289,7 +289,7 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine with the saved one. The machine must have repeated the run up to the saved field.
+    /// Compares a machine with the saved machine. The machine must have repeated the run up to the saved field.
     ///
     /// # Errors
     ///

@@ -19,7 +19,7 @@ pub struct WhatIf {
     /// Mean latency in milliseconds without (first) and with (second) the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
     /// Number of complete new pictures per second without (first) and with (second) the change. `None` if fewer than
-    /// two were shown.
+    /// two pictures were shown.
     pub updates_hz: [Option<f64>; 2],
     /// The level of modelling that gave the results: `analytic`, or the level of the run.
     pub level: &'static str,

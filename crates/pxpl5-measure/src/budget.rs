@@ -9,27 +9,27 @@ use std::collections::BTreeMap;
 /// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
-    /// From the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
+    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
     #[serde(deserialize_with = "number_or_nan")]
     pub tracking_ms: f64,
-    /// From the arrival of the tracker's report until the pipeline uses it.
+    /// Time from the arrival of the tracker's report until the pipeline uses the report.
     #[serde(deserialize_with = "number_or_nan")]
     pub waiting_ms: f64,
-    /// From the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
+    /// Time from the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
     #[serde(deserialize_with = "number_or_nan")]
     pub sending_ms: f64,
-    /// From the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER, COPY.
+    /// Time from the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER and COPY.
     #[serde(deserialize_with = "number_or_nan")]
     pub drawing_ms: f64,
-    /// From the end of COPY until the picture is shown: wait for the retrace or for the display's beam.
+    /// Time from the end of COPY until the picture is shown: the wait for the retrace or for the display's beam.
     ///
-    /// Negative if the last pixels arrive after the first pixels are shown.
+    /// The time is negative if the last pixels arrive after the first pixels are shown.
     #[serde(deserialize_with = "number_or_nan")]
     pub showing_ms: f64,
-    /// From the time the picture is shown until the display's beam reaches the middle of the picture.
+    /// Time from the start of the display of the picture until the display's beam reaches the middle of the picture.
     #[serde(deserialize_with = "number_or_nan")]
     pub scanning_ms: f64,
-    /// From the measurement of the pose until the middle of the picture is lit.
+    /// Time from the measurement of the pose until the middle of the picture is lit.
     #[serde(deserialize_with = "number_or_nan")]
     pub total_ms: f64,
     /// Number of pictures over which the means are computed.
@@ -92,7 +92,7 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast one.
+/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast memory.
 const OLDER_POSES: usize = 64;
 
 /// Sampled views by their numbers.

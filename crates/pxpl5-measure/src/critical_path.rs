@@ -1,8 +1,8 @@
 //! The chain of waits that ends with a picture on the screen.
 //!
 //! The chain is followed backwards, from the picture on the screen to the start of its TRANSFORM. Each step leads from
-//! a piece of work to the earlier work whose end let it begin. Each instant of the latency belongs to one resource, so
-//! the shares add up to 1.
+//! a piece of work to the earlier work whose end allowed this piece to begin. Each instant of the latency belongs to
+//! one resource, so the shares add up to 1.
 
 use crate::resource::Resource;
 use crate::trail::{Step, Trail};
@@ -31,7 +31,7 @@ pub struct PathPart {
 /// The chain of waits of the last complete pictures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
-    /// Number of pictures that were followed: the last complete ones of the result window, at most
+    /// Number of pictures that were followed: the last complete pictures of the result window, at most
     /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
     /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
@@ -97,7 +97,7 @@ impl CriticalPath {
     }
 }
 
-/// Sums the steps of all chains that wait for one resource. Returns `None` if there are none.
+/// Sums the steps of all chains that wait for one resource. Returns `None` if no step waits for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -119,8 +119,8 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// A board is printed by name if it causes at least this share of the wait for a resource. The value affects only the
-/// printed text.
+/// Least share of the wait for a resource at which the text names the board that causes the wait. The value affects
+/// only the printed text.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {

@@ -17,7 +17,8 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// Number of values in each bin. The key holds the leading bits of the values. Empty up to `limit` values.
+    /// Number of values in each bin. The key holds the leading bits of the values. The map is empty up to `limit`
+    /// values.
     bins: BTreeMap<u64, u64>,
 }
 

@@ -327,7 +327,8 @@ impl Evaluation {
         let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
-            // Find the place in the drawn picture that the pixel shows. It can lie beyond the edge of the picture.
+            // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
+            // picture.
             let from = match &self.content {
                 Content::AdvancedMotion(_, offset) => {
                     let Some(offset) = offset else { continue };
@@ -451,7 +452,7 @@ mod tests {
         }
     }
 
-    /// A run that discards records has as many views in memory at its end as after the first discard, or fewer.
+    /// A run that discards records must not have more views in memory at its end than after the first discard.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [

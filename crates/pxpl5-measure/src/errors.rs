@@ -72,7 +72,7 @@ pub struct PixelErrors {
     pub all_px: Vec<f64>,
 }
 
-/// Number of columns and rows of the grid. Odd, so that one pixel lies in the middle.
+/// Number of columns and rows of the grid. The number is odd, so that one pixel lies in the middle.
 const GRID: u32 = 5;
 
 /// Index of the pixel in the middle of the grid.
@@ -119,7 +119,7 @@ pub enum Showing {
     Ideal,
     /// A device moves each picture to the newest pose.
     Reprojected(Reprojection),
-    /// Pictures are shown as drawn, before a video of the real world that is delayed with them (I3D95, 2.1).
+    /// Pictures are shown as drawn, in front of a video of the real world that has the same delay (I3D95, 2.1).
     ///
     /// Pictures and video show the instant at which the head was measured, so only the tracker's error remains. The
     /// video lags behind the real world by the time from the measurement of the head until the pixels are lit.

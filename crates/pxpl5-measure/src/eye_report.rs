@@ -6,7 +6,8 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Results in addition to the pixel errors. They exist if pixels shine for some time, or if a device moves pictures.
+/// Results in addition to the pixel errors. These results exist if pixels shine for some time, or if a device moves
+/// pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
@@ -27,7 +28,7 @@ pub struct ReprojectionReport {
     pub poses_per_s: f64,
     /// Age of the newest pose when the pixel is lit: time since the measurement of the pose, in milliseconds.
     pub pose_age_ms: Percentiles,
-    /// Number of pixels for which the evaluation checked if the picture has content for them.
+    /// Number of checked pixels. For each of these pixels, the evaluation searched the picture for the pixel's content.
     pub looked_at: u64,
     /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
     pub empty_share: Option<f64>,
@@ -79,7 +80,7 @@ impl EyeSum {
         }
     }
 
-    /// Adds a pixel for which the evaluation checked if the picture has content.
+    /// Adds a checked pixel, for whose content the evaluation has searched the picture.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

@@ -21,7 +21,7 @@ pub struct FacesReport {
     pub matrix_loads: u64,
     /// Number of orientations that the display refused.
     pub matrix_refused: u64,
-    /// The display memories, starting with the one that is drawn most often.
+    /// The display memories, starting with the memory that is drawn most often.
     pub memories: Vec<MemoryReport>,
     /// Time from the measurement of an orientation until the middle of the picture is lit, in milliseconds. `None`
     /// without a tracker.
@@ -47,8 +47,8 @@ pub struct MemoryReport {
     pub missed: u64,
     /// Latency from a translation of the head until the middle of the picture is lit, in milliseconds, over all fields.
     ///
-    /// The latency starts at the measurement of the head. Without a tracker it starts when the memory becomes due.
-    /// `None` before the first update, and in a run that discarded its records without a streaming observer.
+    /// The latency starts at the measurement of the head. Without a tracker the latency starts when the memory becomes
+    /// due. `None` before the first update, and in a run that discarded its records without a streaming observer.
     pub translation_latency_ms: Option<Statistics>,
     /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
@@ -98,7 +98,7 @@ impl MemoryReport {
         // Mean number of periods between updates within the window.
         let period =
             outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
-        // The last update tells which structures the memory holds.
+        // The last update shows which structures the memory holds.
         let notes = outcome.face_notes().all();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {

@@ -27,7 +27,7 @@ const MISSING_RESULTS: &str = "latencies from the head to light and errors in pi
     streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
 
 impl PixelErrors {
-    /// Returns the errors of a run whose pictures are shown as drawn. Empty for a run without a head.
+    /// Returns the errors of a run whose pictures are shown as drawn. The result is empty for a run without a head.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         Self::shown(outcome, Showing::Plain)
@@ -36,7 +36,7 @@ impl PixelErrors {
     /// Returns the errors of a run in the display mode `showing`.
     ///
     /// A run that discarded its records ([`Outcome::has_discarded_records`]) covers all periods only if
-    /// [`HeadSum`](crate::HeadSum) observed it and `showing` is the head's own display mode. Otherwise the result
+    /// [`HeadSum`](crate::HeadSum) observed the run and `showing` is the head's own display mode. Otherwise the result
     /// covers only the last periods.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
@@ -63,7 +63,7 @@ fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (Pixel
 impl EyeReport {
     /// Evaluates a run with a head in the display mode `showing`.
     ///
-    /// Returns `None` without a head. Returns `None` too for a display without persistence and without reprojection.
+    /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
         outcome.head().and_then(|_| judged(outcome, showing, None).1)

@@ -11,8 +11,8 @@ use std::any::Any;
 
 /// A streaming observer for runs that keep only statistics.
 ///
-/// It collects the latency from the head's pose until pixels are lit, rotation latencies of address recalculation
-/// displays, and errors in pixels. Enable it with
+/// The observer collects the latency from the head's pose until pixels are lit, rotation latencies of address
+/// recalculation displays, and errors in pixels. Enable it with
 /// `experiment.keep(Keep::Statistics).observed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {

@@ -1,4 +1,4 @@
-//! Measurements of a run: latencies and their parts, errors in pixels, pictures, and a report of all of them.
+//! Measurements of a run: latencies and their parts, errors in pixels, pictures, and a report of all these results.
 //!
 //! | question | answer |
 //! |---|---|

@@ -57,7 +57,7 @@ impl<'a> PictureMover<'a> {
         reprojector
     }
 
-    /// Writes the moved rows of a field piece by piece, each from the picture that it shows.
+    /// Writes the moved rows of a field piece by piece. Each piece comes from the picture that it shows.
     fn move_pieces(&self, reprojector: &Reprojector, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
         for y in Rows::lit(display, field).of(screen.height()) {
@@ -67,8 +67,8 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the ranges of pixels in a row that have one pose: one range per region, or single pixels if each column
-    /// has its own pose.
+    /// Returns the ranges of pixels in a row that have one pose. A range covers a region, or a single pixel if each
+    /// column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
         let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };
@@ -106,8 +106,8 @@ impl<'a> PictureMover<'a> {
         true
     }
 
-    /// Returns the moment for which all pixels of a field were drawn. `None` if they differ or a pixel shows no complete
-    /// picture.
+    /// Returns the moment for which all pixels of a field were drawn. Returns `None` if the pixels were drawn for
+    /// different moments, or if a pixel shows no complete picture.
     fn only_moment(&self, screen: &RgbImage, field: PeriodNumber) -> Option<Moment> {
         let display = self.run.record.display();
         let mut only: Option<Moment> = None;
@@ -125,7 +125,8 @@ impl<'a> PictureMover<'a> {
         only
     }
 
-    /// Returns the depths of a picture's rows. One ray for each pixel finds its depth, once for a picture.
+    /// Returns the depths of a picture's rows. The depth of each pixel comes from one ray, which is cast only once for
+    /// a picture.
     fn depths(&self, drawn_for: &Moment, size: [u32; 2], rows: Rows) -> Arc<DepthPicture> {
         let mut latest = self.latest.borrow_mut();
         if let Some((moment, of_rows, depths)) = &*latest

@@ -34,9 +34,9 @@ impl Eq for Quantity {}
 
 #[derive(Debug)]
 enum Value {
-    /// Computed from a summary, which every level of modelling provides.
+    /// The quantity is computed from a summary, which every level of modelling provides.
     OfSummary(fn(&Summary) -> f64),
-    /// Computed from a simulated run and its report.
+    /// The quantity is computed from a simulated run and its report.
     OfRun(fn(&Outcome, &Report) -> Option<f64>),
 }
 
@@ -212,7 +212,7 @@ impl Measure {
     }
 
     /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.
-    /// Without them, a mean over few pictures looks like a mean over all.
+    /// Without these counts, a mean over few pictures looks like a mean over all pictures.
     #[must_use]
     pub fn counts() -> Vec<Self> {
         let is_count = |q: &&Quantity| [Self::DUE, Self::NOT_SHOWN, Self::EVALUATED].contains(&q.name);

@@ -46,8 +46,8 @@ impl<'a> Vdrt<'a> {
     }
 }
 
-/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports known at the
-/// field's start.
+/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports that have arrived
+/// at the field's start.
 pub(crate) fn offset(
     estimator: &mut Estimator,
     display: &dyn Display,
@@ -65,8 +65,8 @@ pub(crate) fn offset(
     RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
 }
 
-/// The corrections that a display applies to the pictures of a run. They are a raster offset for every field, or a
-/// device that moves pictures to the newest pose.
+/// The corrections that a display applies to the pictures of a run. The corrections are a raster offset for every
+/// field, or a device that moves pictures to the newest pose.
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,

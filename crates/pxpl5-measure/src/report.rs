@@ -28,7 +28,7 @@ pub struct Report {
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
-    /// Commit from which the program was built. `None` if the program does not know its commit.
+    /// Commit from which the program was built. `None` if the program did not state its commit.
     pub commit: Option<String>,
     /// Name of the machine's preset.
     pub machine: String,
@@ -48,8 +48,8 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// Warnings, such as parameters outside the range that the sources allow.
     pub warnings: Vec<String>,
-    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than the
-    /// pipeline drew.
+    /// Messages that each display could not use, with the first reason. If the list is not empty, the displays show
+    /// less than the pipeline drew.
     pub display_faults: Vec<String>,
     /// Number of graphics processors in the machine, including the master.
     pub n_gps: usize,
@@ -73,8 +73,8 @@ pub struct Report {
     pub latency_fields: DefinedStatistics,
     /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
-    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose until the picture is
-    /// lit.
+    /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
+    /// is lit.
     pub latency_parts_ms: Vec<LatencyPartStatistics>,
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.
@@ -83,7 +83,8 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
-    /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
+    /// Number of complete new pictures per second within the result window. `None` if fewer than two pictures were
+    /// shown.
     pub updates_hz: Option<f64>,
     /// Number of pictures due in the result window, by result. `None` if no picture was due.
     pub due: Option<DuePictures>,

@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Contents of a run's first surface over time. Only arrivals that were added and not discarded are known.
+/// Contents of a run's first surface over time. The contents cover only arrivals that were added and not discarded.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
@@ -13,7 +13,8 @@ pub(crate) struct Screen {
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals of regions in one buffer, with one division of the screen into regions. Sorted by region and time.
+/// Arrivals of regions in one buffer, with one division of the screen into regions. The arrivals are sorted by region
+/// and time.
 #[derive(Debug)]
 struct Cut {
     /// Copy target of the first arrival. The region and the picture in this target are ignored.
@@ -83,7 +84,7 @@ impl Screen {
 
     /// Returns the region that a pixel of a field shows at the instant `at`, or `None` before the first arrival.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
-        // Buffer 0 is shown first, and every swap shows the other one.
+        // Buffer 0 is shown first, and every swap shows the other buffer.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);
         let buffer = self.swaps[..before].last().map_or(0, |swap| ((swap.1 + 1) % 2) as u8);
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));

@@ -45,7 +45,7 @@ pub(crate) struct Shown {
     faces: Option<LatchedFaces>,
 }
 
-/// The moment for which a view was drawn, and the arrival time of the last tracker report that the host knew.
+/// The moment for which a view was drawn, and the arrival time of the last tracker report that the host had received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -158,7 +158,7 @@ impl Shown {
 
     /// Returns the views that a pixel shows when it is lit at `at`.
     ///
-    /// The result has one view, or two for an interpolated picture. It is empty before the first arrival.
+    /// The result has one view, or two for an interpolated picture. The result is empty before the first arrival.
     pub(crate) fn views_at(
         &self,
         run: &FinalResults<'_>,

@@ -10,7 +10,7 @@ const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
 /// A streaming observer of the latencies of a step of the head.
 ///
-/// It adds one latency for each memory and each display period after the memory's first update.
+/// The observer adds one latency for each memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
 pub(crate) struct StepSum {
     next: PeriodNumber,

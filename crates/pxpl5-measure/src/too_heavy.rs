@@ -18,7 +18,7 @@ pub struct TooHeavy {
     ///
     /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
-    /// Advice to the user: a number of triangles to try, or a command that finds one.
+    /// Advice to the user: a number of triangles to try, or a command that finds this number.
     pub advice: String,
 }
 

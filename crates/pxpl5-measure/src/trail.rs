@@ -232,7 +232,8 @@ impl<'a> Trail<'a> {
         let by_port = self
             .arrival_before(place, begin + NEAR, |before| before.target.frame_buffer == arrival.target.frame_buffer);
         let Some(place_drawn) = drawn else { return self.to_arrival(way, by_port) };
-        // A port that was free only for a moment is the limit: a region that had come earlier would have waited for it.
+        // A port that was free only for a moment is the limit: a region that had come earlier would have waited for the
+        // port.
         let slack = Span(arrival.last_part_at.since(begin).0 / SLACK);
         if by_port.is_some_and(|before| self.arrivals[before].last_part_at + slack >= begin) {
             return self.to_arrival(way, by_port);
@@ -290,7 +291,7 @@ impl<'a> Trail<'a> {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
         let timing = self.record.ring().timing();
-        // The minimum time is that of whole messages and of one shorter message, without waits between them.
+        // The minimum time is the time of whole messages and one shorter message, without waits between the messages.
         let needed = drawn.map_or(way.cursor.since(begin.min(way.cursor)), |drawn| {
             let words = self.drawn[drawn].1.words;
             let whole = timing.occupancy(pxpl5_wire::MAX_MESSAGE_WORDS);
@@ -316,7 +317,8 @@ impl<'a> Trail<'a> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
 
-    /// Returns the index of the last wanted arrival that precedes arrival `place` and had ended by the instant `by`.
+    /// Returns the index of the last arrival for which `is_wanted` returns true, before the arrival `place`. The
+    /// arrival must have ended by the instant `by`.
     fn arrival_before(&self, place: usize, by: Time, is_wanted: impl Fn(&Arrival) -> bool) -> Option<usize> {
         let end = self.arrivals_by(by).min(place);
         let first = end.saturating_sub(ARRIVALS_SEARCHED);

@@ -50,7 +50,7 @@ impl Shares {
     }
 }
 
-/// Share of the time below which a board counts as idle (assumed: the messages of a board without work stay below it).
+/// Share of the time below which a board counts as idle (assumed: the messages of a board without work take less time).
 const IDLE: f64 = 0.01;
 
 /// Shares of CPU time of the graphics processors, 0 to 1.

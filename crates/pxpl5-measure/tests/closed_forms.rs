@@ -235,7 +235,7 @@ fn error(right: f64, up: f64, turned_rad: f64) -> [f64; 2] {
     let (sin, cos) = turned_rad.sin_cos();
     let seen = [right * cos + focal * sin, up, focal * cos - right * sin];
     let place = [seen[0] * focal / seen[2], seen[1] * focal / seen[2]];
-    // The point moves on a circle about the vertical. The angle of the error is that of the chord.
+    // The point moves on a circle about the vertical. The angle of the error is the angle of the chord.
     let radius = right.hypot(focal);
     let chord = radius / radius.hypot(up) * (turned_rad.abs() / 2.0).sin();
     [(place[0] - right).hypot(place[1] - up), 2.0 * chord.asin().to_degrees()]

@@ -86,7 +86,7 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
-    // A streaming observer knows the latency of translation also of a run that has discarded records.
+    // A streaming observer also has the latency of translation of a run that has discarded records.
     for memory in report.arp.iter().flat_map(|faces| &faces.memories) {
         assert_eq!(memory.translation_latency_ms.is_some(), memory.updates > 0);
     }

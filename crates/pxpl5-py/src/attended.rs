@@ -42,8 +42,8 @@ impl Progress {
 /// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps. It
-/// is called at most twenty times a second, and once at the end.
+/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
+/// The callback is called at most twenty times a second, and once at the end.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
 /// work has stopped. If `waits` is false, the exception is raised at once, and the result of the work is discarded.
@@ -89,8 +89,8 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// Stack size of the worker thread in bytes, equal to that of a main thread. The emulator has not been tested with a
-/// smaller stack.
+/// Stack size of the worker thread in bytes, equal to the stack of a main thread. The emulator has not been tested with
+/// a smaller stack.
 pub(crate) const STACK_BYTES: usize = 8 << 20;
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.

@@ -33,8 +33,8 @@ pub(crate) struct Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, it replaces the one in the
-    /// settings.
+    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, it replaces the scene,
+    /// motion or policy in the settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.
@@ -82,13 +82,13 @@ impl Experiment {
         Ok(hash)
     }
 
-    /// Returns warnings about results that no source supports. They concern parameters outside their plausible range,
-    /// and work at the cycle level that no code executes.
+    /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
+    /// range, and work at the cycle level that no code executes.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }
 
-    /// Returns all parameters by path with values, units and sources, including those of the tracker.
+    /// Returns all parameters by path with values, units and sources, including the parameters of the tracker.
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         crate::catalogue::python(py, &crate::catalogue::described(&self.plan.parameters()))
     }
@@ -180,7 +180,7 @@ impl Experiment {
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
-    /// one. The value is None for a quantity that the run does not have.
+    /// level. The value is None for a quantity that the run does not have.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -23,7 +23,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[pyclass(frozen, module = "pxpl5")]
 pub(crate) struct Motion {
     pub(crate) moving: Arc<dyn Moving + Send + Sync>,
-    /// Python function that computes the poses of this motion, and its exception. `None` for other motions.
+    /// Python function that computes the poses of this motion, with the exception that the function has raised. `None`
+    /// for other motions.
     pub(crate) called: Option<Arc<CallableMotion>>,
     about: String,
     origin: Origin,
@@ -232,7 +233,7 @@ impl CallableMotion {
 /// Greatest time of a pose in seconds. A time of a run in picoseconds has 64 bits.
 const MAX_TIME_S: f64 = 1.8e7;
 
-/// Largest difference between 1 and the length of a quaternion from Python. It allows rounding to a few digits.
+/// Largest difference between 1 and the length of a quaternion from Python. The value allows rounding to a few digits.
 const UNIT: f64 = 1e-3;
 
 impl fmt::Debug for CallableMotion {

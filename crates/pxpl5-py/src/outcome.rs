@@ -22,7 +22,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Results of an experiment: the machine's record and the pictures that were shown.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Outcome {
-    /// Outcome of the run before the results are computed. `results` takes it out and leaves `None`.
+    /// Outcome of the run before the results are computed. `results` takes the outcome out and leaves `None`.
     outcome: Mutex<Option<pxpl5::Outcome>>,
     results: OnceLock<Results>,
     measures: Vec<Measure>,
@@ -38,7 +38,7 @@ impl Outcome {
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
-                // A second caller waits for this lock until the first one has finished.
+                // A second caller waits for this lock until the first caller has finished.
                 let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
                 if let Some(outcome) = outcome.take() {
                     let _ = self.results.set(Results::of_run(outcome));

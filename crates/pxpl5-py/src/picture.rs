@@ -47,7 +47,7 @@ impl Picture {
     #[new]
     fn new(py: Python<'_>, pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
         let mut array = py.import("numpy")?.call_method1("asarray", (pixels,)).map_err(wrong_setting)?;
-        // Integers of another type are taken if all of them fit. A cast alone would change those that do not.
+        // Integers of another type are taken if all integers fit. A cast alone would change integers that do not fit.
         let bytes = array.call_method1("astype", ("uint8",));
         if let Ok(bytes) = bytes
             && matches!(array.getattr("dtype")?.getattr("kind")?.extract()?, 'i' | 'u')
@@ -76,8 +76,8 @@ impl Picture {
         self.pixels.bind(py).clone()
     }
 
-    /// Returns the pixels for ``numpy.asarray``. They are copied only if another element type is requested or ``copy``
-    /// is true.
+    /// Returns the pixels for ``numpy.asarray``. The pixels are copied only if another element type is requested or
+    /// ``copy`` is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,

@@ -263,5 +263,5 @@ impl Processor {
     }
 }
 
-/// Number of instructions between two checks for Ctrl-C. Executing so many takes some tens of milliseconds.
+/// Number of instructions between two checks for Ctrl-C. Executing this number takes some tens of milliseconds.
 const PIECE: u64 = 2_000_000;

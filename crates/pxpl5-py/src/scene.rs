@@ -40,8 +40,9 @@ impl Scene {
         py.detach(|| scene::builtin(&name)).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Loads a model file (PLY, OBJ, STL or PDB). The extension determines the format. The model is moved and scaled so that
-    /// both eyes see all of it. With ``fit=False``, the model keeps its coordinates, which are then in metres.
+    /// Loads a model file (PLY, OBJ, STL or PDB). The extension determines the format. The model is moved and scaled so
+    /// that both eyes see the whole model. With ``fit=False``, the model keeps its coordinates, which are then in
+    /// metres.
     ///
     /// Raises :class:`pxpl5.SettingError` with the file, the position in the file, and the expected and the found text.
     #[staticmethod]
@@ -155,8 +156,8 @@ impl Scene {
         table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))
     }
 
-    /// Returns a simplified scene with at most ``primitives`` triangles and spheres, 1 or more. Its shape stays
-    /// similar.
+    /// Returns a simplified scene with at most ``primitives`` triangles and spheres, 1 or more. The shape of the scene
+    /// stays similar.
     ///
     /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
     fn decimated(&self, py: Python<'_>, primitives: Count) -> PyResult<Self> {
@@ -350,7 +351,7 @@ struct Rest {
     warnings: Vec<String>,
 }
 
-/// A structure of a scene. Ranges are pairs of the first index and the index after the last one.
+/// A structure of a scene. Ranges are pairs of the first index and the index after the last index.
 #[derive(Serialize, Deserialize)]
 struct StructureState {
     name: String,

@@ -1,12 +1,12 @@
-//! Settings of an experiment by path, such as those of an experiment file.
+//! Settings of an experiment by path, such as the settings of an experiment file.
 
 use crate::errors::wrong_setting;
 use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Settings of an experiment by path, as in an experiment file. They are checked together only when an experiment is
-/// created from them.
+/// Settings of an experiment by path, as in an experiment file. The settings are checked together only when an
+/// experiment is created from them.
 #[pyclass(skip_from_py_object, module = "pxpl5._native")]
 #[derive(Clone)]
 pub(crate) struct Settings {

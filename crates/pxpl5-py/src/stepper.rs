@@ -190,7 +190,7 @@ impl Stepper {
         self.step(py, |stepper, _| stepper.step_line())
     }
 
-    /// Handles one event, or the events up to the next one of a board. Returns the same texts as :meth:`run_to_ps`.
+    /// Handles one event, or the events up to the next event of a board. Returns the same texts as :meth:`run_to_ps`.
     ///
     /// Raises :class:`pxpl5.SettingError` for an unknown board.
     #[pyo3(signature = (board = None))]
@@ -291,7 +291,7 @@ impl Stepper {
         self.thread.look(py, |stepper, _| stepper.so_far().pictures().iter().filter(|times| times.is_shown()).count())
     }
 
-    /// Runs to the end and returns the outcome, which equals that of a run without steps.
+    /// Runs to the end and returns the outcome, which equals the outcome of a run without steps.
     ///
     /// Raises the same exceptions as :meth:`Experiment.run`.
     fn finish(&self, py: Python<'_>) -> PyResult<crate::outcome::Outcome> {

@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// A column of a table with its name, its description and its values.
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the column's values with their unit. It becomes the metadata `about` of the Arrow field.
+    /// Description of the column's values with their unit. The description becomes the metadata `about` of the Arrow
+    /// field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }

@@ -26,7 +26,7 @@ pub(crate) fn volume_keys() -> Vec<String> {
     VolumeSettings::paper().keys()
 }
 
-/// Returns the published values of the SpatialGL paper beside those of the model. The result is a dictionary with
+/// Returns the published values of the SpatialGL paper beside the values of the model. The result is a dictionary with
 /// figures and shown.
 ///
 /// Raises :class:`pxpl5.SettingError` for a scene that cannot be drawn.

@@ -50,8 +50,8 @@ impl DuePictures {
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
     /// that was not over when the run ended.
     ///
-    /// A picture also counts as shown if it comes before its due period, but after the due period of the picture
-    /// before.
+    /// A picture also counts as shown if it comes before its due period, but after the due period of the preceding
+    /// picture.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
@@ -78,7 +78,7 @@ impl DuePictures {
         Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
     }
 
-    /// Returns the number of due pictures that were not shown: late, incomplete and missed ones.
+    /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.
     #[must_use]
     pub const fn not_shown(&self) -> u64 {
         self.due - self.shown

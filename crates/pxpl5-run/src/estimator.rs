@@ -1,4 +1,4 @@
-//! Estimates of the head's pose from the reports that the host knows. One cause of error can be removed.
+//! Estimates of the head's pose from the tracker reports that have reached the host. One cause of error can be removed.
 
 use crate::head_views::{Follower, HeadViews};
 use crate::report_schedule::Coming;
@@ -18,7 +18,7 @@ use tracking::tracker::{TrackerConfig, TrackerModel};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host knows
+    /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host has
     /// all measurements up to the instant for which a picture is drawn.
     Latency,
     /// Duration of the scan: a picture is drawn for one instant but is lit over a time span. Without this cause, the
@@ -115,7 +115,7 @@ fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns a predictor like that of the run, which receives the reports of another tracker instead.
+/// Returns a predictor with the settings of the run's predictor, which receives the reports of another tracker.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);
@@ -125,9 +125,10 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns a pose from reports whose newest one arrives at `known`.
+/// Returns a pose from a separate series of reports. The newest report of the series arrives at `known`.
 ///
-/// The reports come from a motion that is shifted in time, by the age of the run's newest report at `known`.
+/// The series reports the head's motion with a shift in time. The shift is the age of the run's newest report at
+/// `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.

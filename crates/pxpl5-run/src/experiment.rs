@@ -93,11 +93,11 @@ pub struct Experiment {
 pub struct Estimates {
     /// Function that estimates the number of fields until the first picture after the warm-up is shown.
     ///
-    /// The function returns `None` if no such picture will be shown, or if the model cannot tell.
+    /// The function returns `None` if no such picture will be shown, or if the formulas give no estimate.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
     /// Function that estimates how many of the scene's first primitives the pipeline can show in time.
     ///
-    /// The function returns `None` if the model cannot tell.
+    /// The function returns `None` if the formulas give no estimate.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
@@ -226,7 +226,7 @@ impl Experiment {
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
     ///
-    /// Hidden, because the estimates change error messages only. Plans of experiment files set them.
+    /// This method is hidden, because the estimates change error messages only. Plans of experiment files set them.
     #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {

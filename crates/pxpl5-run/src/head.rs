@@ -1,4 +1,4 @@
-//! A head, a tracker and a predictor. From them, a pipeline gets its views.
+//! A head, a tracker and a predictor, which together give a pipeline its views.
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
@@ -39,8 +39,8 @@ const TUNING: &str = "for its interval and motion, version 1";
 /// Meaning of the positions and orientations of a head motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeadPlace {
-    /// The motion counts from the start of the scene's own motion: the first pose of the motion is placed there, and the
-    /// others relative to the first.
+    /// The first pose of the motion is placed at the start of the scene's own motion. All other poses keep their
+    /// position and orientation relative to the first pose.
     #[default]
     Scene,
     /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
@@ -89,10 +89,11 @@ impl fmt::Debug for Head {
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker.
+    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the noise that the tracker really
+    /// has.
     ///
-    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is.
-    /// [`Head::placed`] with [`HeadPlace::World`] takes its poses as coordinates of the scene.
+    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is. After
+    /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
     ///
     /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
     /// See [`tune`](tracking::predict::tune).

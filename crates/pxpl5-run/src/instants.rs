@@ -9,8 +9,8 @@ const BLOCK: u64 = 256;
 /// Compressed instants by ascending numbers.
 ///
 /// Each entry stores how many numbers were skipped before it, and the difference from the expected instant. The
-/// expected instant assumes that the step before the last one is repeated. Steps may alternate, as for two fields, or
-/// for two and three periods in turn. The difference is then 0 and takes one byte.
+/// expected instant is the last instant plus the step before the last step. If two steps alternate, for example the
+/// steps of two fields, or of two and three periods, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -19,7 +19,8 @@ pub(crate) struct Instants {
     count: u64,
 }
 
-/// A point at which decoding can begin: an entry, and the byte position of the next entry.
+/// A point at which decoding of the compressed instants can begin: a decoded entry, and the byte position of the next
+/// entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Begin {
     at: At,
@@ -35,8 +36,8 @@ struct At {
 }
 
 impl At {
-    /// Returns the next instant if the step before the last one is repeated. Steps wrap around, so an instant may lie
-    /// before its predecessor.
+    /// Returns the expected next instant: the last instant plus the step before the last step. Steps wrap around, so an
+    /// instant may lie before its predecessor.
     const fn expected(&self) -> u64 {
         self.instant.wrapping_add(self.steps[0])
     }

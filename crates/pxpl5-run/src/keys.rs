@@ -34,7 +34,7 @@ impl fmt::Display for KeyValue {
 pub enum KeyValues {
     /// The key allows true and false.
     Flag,
-    /// The key allows whole numbers from the first to the second, inclusive.
+    /// The key allows whole numbers from the first number to the second number, inclusive.
     Whole(u64, u64),
     /// The key allows one of these names.
     Names(&'static [&'static str]),

@@ -6,13 +6,13 @@
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!
-//! The ring needs no third form. A property test of the ring's crate shows that the events and a word-by-word reference
-//! model give the same picosecond for every message.
+//! The cycle level needs no more detailed model of the ring. A property test of the ring's crate shows that the events
+//! and a word-by-word reference model give the same picosecond for every message.
 //!
 //! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines with six faces.
 //! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). No time of the cycle level
 //! comes from the table, which `tests/cycle.rs` checks. Other pipelines take the times of the table for work without
-//! code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports say so.
+//! code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.
 //!
 //! The machine selects the code that runs ([`MachineConfig::code`]), independent of its table of times. With the times
 //! of the code in the table ([`MachineConfig::with_times_of_code`]), the transaction level agrees with the cycle level

@@ -95,7 +95,7 @@ impl Outcome {
     /// Returns all pictures that were begun and evaluated, complete or not.
     ///
     /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics ([`Keep`](crate::Keep)) returns only
-    /// the last of them.
+    /// the last pictures.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
@@ -149,7 +149,7 @@ impl Outcome {
     /// Returns the number of complete new pictures per second, over the result window.
     ///
     /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
-    /// two pictures were shown, or if all of them belong to the warm-up.
+    /// two pictures were shown, or if all shown pictures belong to the warm-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
@@ -283,7 +283,7 @@ impl Outcome {
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
         let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
-        // A pipeline without a second copy spends no time on it. Without any copy, the time is unknown.
+        // A pipeline without a second copy spends no time on a second copy. Without any copy, the time is unknown.
         let last_copy_ms = if last_copy_ms.is_nan() && !first_copy_ms.is_nan() { 0.0 } else { last_copy_ms };
         Summary {
             latencies_ms: tally.latency_ms.clone(),

@@ -46,20 +46,21 @@ pub struct Setup {
     pub list: Arc<DisplayList>,
     /// Function that returns the newest view: its transforms, and the edits of moving structures.
     pub views: Views,
-    /// Function that returns a view for a given display time, for firmware that knows when the view will be seen.
+    /// Function that returns a view for a given display time, for firmware that computes the display time of a view.
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
     /// For each structure of the scene, true if the structure moves by itself or with the head.
     pub moving: Arc<[bool]>,
-    /// Cells in which each structure lies. Empty unless the pipeline cut the scene into cells ([`Pipeline::cut`]).
+    /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
+    /// ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
     /// Record of the updates that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
     ///
-    /// Only firmware that knows the display time uses this setting.
+    /// Only firmware that computes the display times of its views uses this setting.
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
@@ -140,8 +141,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         false
     }
 
-    /// Returns the scene in segments that are drawn at different times. Returns `None` if the host loads the scene
-    /// unchanged.
+    /// Returns the scene in segments (parts of objects) that are drawn at different times. Returns `None` if the host
+    /// loads the scene unchanged.
     ///
     /// # Errors
     ///
@@ -165,7 +166,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// Returns true if the firmware itself knows when a view will be seen.
+    /// Returns true if the firmware itself computes the time at which a view will be seen.
     fn knows_when_seen(&self) -> bool {
         false
     }
@@ -186,7 +187,7 @@ pub trait PictureRules {
     /// Returns the number of display periods before `end` in which the display showed old cube faces in a new head
     /// direction.
     ///
-    /// Each such period counts as a picture, although the pipeline drew nothing for it.
+    /// Each such period counts as a picture, although the pipeline drew nothing for this period.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }

@@ -10,16 +10,16 @@ use crate::rehearsal_sum::DryRunObserver;
 use crate::sums::{ObserverFactory, StreamingObserver};
 use std::sync::Arc;
 
-/// Number of fields of a dry run for firmware that knows when its views are seen.
+/// Number of fields of a dry run for firmware that computes the display times of its views.
 ///
-/// This number suffices for the statistics of the prediction interval. If no picture is complete after so many fields,
-/// the dry run takes all fields.
+/// This number suffices for the statistics of the prediction interval. If no picture is complete after this number of
+/// fields, the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
 /// Results of the preparation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
-    /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times itself.
+    /// Time at which each view is seen. `None` without prediction, or if the firmware computes these times itself.
     pub(crate) rehearsal: Option<SeenTimes>,
     /// Head with a tuned predictor. `None` if the predictor needs no tuning.
     pub(crate) head: Option<Arc<Head>>,
@@ -48,8 +48,8 @@ impl Experiment {
 
     /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs only in the predictor.
     ///
-    /// Hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this function, so that
-    /// they make one dry run for all predictors.
+    /// This method is hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this
+    /// function, so that they make one dry run for all predictors.
     #[doc(hidden)]
     #[must_use]
     pub fn with_dry_run(self, rehearsed: Option<Arc<DryRun>>) -> Self {

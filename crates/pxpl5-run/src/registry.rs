@@ -59,7 +59,7 @@ pub struct LimitCriterion {
     pub goal: Goal,
     /// Kind of triangles in the test scene.
     pub scene: TestScene,
-    /// Number of fields to simulate for each size of the scene. It is large enough to reach a steady state.
+    /// Number of fields to simulate for each size of the scene. The number is large enough to reach a steady state.
     pub fields: u64,
 }
 
@@ -138,7 +138,7 @@ impl FromStr for DisplayEntry {
     }
 }
 
-/// All known pipelines and displays.
+/// All registered pipelines and displays.
 #[derive(Clone, Debug)]
 pub struct Registry {
     pipelines: Vec<PipelineEntry>,

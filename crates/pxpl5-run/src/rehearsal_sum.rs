@@ -96,8 +96,8 @@ impl DryRunObserver {
 
     /// Returns the pictures, each with the picture that replaces it.
     ///
-    /// For a display with several memories, only the first memory is timed. It holds the structures that must be drawn
-    /// most often. The last picture of this memory is returned only when its successor is known.
+    /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
+    /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
     fn timed(&mut self, settled: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = settled.notes.all();
         // Leave out the updates of all memories except the first.
@@ -123,7 +123,7 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
+    /// Finishes all views except the newest view, which the next picture may show too. At the end of the run, finishes
     /// the newest view too.
     fn end_views(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
@@ -135,8 +135,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Finishes a view. Firmware that knows when views are seen needs no instants from the dry run. Such firmware may
-    /// show views out of the order of their numbers.
+    /// Finishes a view. Firmware that computes the display times of its views needs no instants from the dry run. Such
+    /// firmware may show views out of the order of their numbers.
     fn end_view(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = settled.aim.instant(&shown);

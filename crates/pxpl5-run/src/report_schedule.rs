@@ -28,8 +28,8 @@ impl Coming {
 
 /// Times of the reports of a run.
 ///
-/// Only reports that were requested and not discarded are in memory. So memory does not depend on the length of the
-/// run.
+/// Only reports that were requested and not discarded are in memory. The use of memory therefore does not depend on the
+/// length of the run.
 pub(crate) struct ReportSchedule {
     arrivals: Arrivals,
     known: VecDeque<Coming>,
@@ -59,7 +59,7 @@ impl ReportSchedule {
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards reports that are not needed for this instant or later ones.
+    /// Discards reports that are not needed for this instant or later instants.
     ///
     /// The last report before the instant stays, and so do reports that arrived at the same time.
     pub(crate) fn discard_before(&mut self, instant: Time) {

@@ -3,9 +3,9 @@
 //! The warm-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
 //! were begun. The window begins after the warm-up, with the periods of the next picture that is due.
 //!
-//! If a due picture in the first half of the run was not shown, the window begins with the first such picture. So no
-//! failure is left out. Earlier pictures may have profited from queues that were still empty. Pictures of the warm-up
-//! never have a latency or an error.
+//! If a due picture in the first half of the run was not shown, the window begins with the first such picture. The
+//! window therefore leaves out no failure. Earlier pictures may have profited from queues that were still empty.
+//! Pictures of the warm-up never have a latency or an error.
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
 
@@ -59,8 +59,8 @@ impl ResultWindow {
         (whole > 0).then_some(Self { last_period, ..begun })
     }
 
-    /// Returns the window of a run that has not ended. All pictures in the periods before `known` must be known. The
-    /// window ends with the requested end of the run.
+    /// Returns the window of a run that has not ended. All pictures in the periods before `known` must have been
+    /// recorded. The window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
         // The warm-up may take at most the first half of the requested run.

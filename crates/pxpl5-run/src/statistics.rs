@@ -25,7 +25,8 @@ pub struct Statistics {
     pub max: f64,
 }
 
-/// Deserializes a number that JSON shows as null if it is NaN. For the attribute `deserialize_with` of serde.
+/// Deserializes a number that JSON shows as null if it is NaN. The function is for the attribute `deserialize_with` of
+/// serde.
 ///
 /// # Errors
 ///

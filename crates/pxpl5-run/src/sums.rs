@@ -1,4 +1,4 @@
-//! Streaming observers. They process the records of a run during the run, so that old records can be discarded.
+//! Streaming observers, which process the records of a run during the run, so that old records can be discarded.
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
@@ -44,10 +44,10 @@ pub struct FinalResults<'a> {
     /// Largest number of samples of each kind that are kept individually: see
     /// [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Currently known result window. `None` if the run has no window.
+    /// Result window as determined so far. `None` if the run has no window.
     ///
-    /// The start of the result window may still move to a later period. Then all data that the observer received before
-    /// lies outside the result window.
+    /// The start of the result window may still move to a later period. All data that the observer received earlier
+    /// then lies outside the result window.
     pub window: Option<ResultWindow>,
 }
 
@@ -74,13 +74,13 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. It must store the data that it needs later, because the run
-/// discards old records.
+/// The observer receives every record once, in order. The observer must store the data that it needs later, because the
+/// run discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, settled: &FinalResults<'_>);
 
-    /// Returns the observer's result. Called once, after the last call of `take`.
+    /// Returns the observer's result. The run calls this method once, after the last call of `take`.
     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 

@@ -27,9 +27,9 @@ const PERIODS_HELD: u64 = 32;
 /// State of the sums of a run, and of the records that are still needed.
 ///
 /// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
-/// display periods. Records are discarded [`PERIODS_HELD`] periods before the first picture that is not final. All
-/// earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more periods, because views are
-/// predicted from older reports.
+/// display periods. Records are discarded if they are at least [`PERIODS_HELD`] periods older than the first picture
+/// that is not final. All earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more
+/// periods, because views are predicted from older reports.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,

@@ -119,7 +119,7 @@ impl HeadMotion {
     }
 
     /// Creates the motion of a head that looks at a model. The distance is so large that both eyes always see the whole
-    /// model, with any seed. It is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
+    /// model, with any seed. The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
     #[must_use]
     pub fn always_visible(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
@@ -147,8 +147,8 @@ impl HeadMotion {
 
     /// Returns the pose of the head at simulated time `time_ps`, in picoseconds.
     ///
-    /// The pose is computed in double precision with software trigonometry. It is then rounded to single precision, as
-    /// are all coordinates of a scene. The time is exact to 2 ns after 200 days.
+    /// The pose is computed in double precision with software trigonometry. The pose is then rounded to single
+    /// precision, as are all coordinates of a scene. The time is exact to 2 ns after 200 days.
     #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;

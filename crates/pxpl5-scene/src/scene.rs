@@ -73,7 +73,8 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. Assumed, any.
+    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. The direction
+    /// is assumed, and any direction would be plausible.
     #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
@@ -117,7 +118,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the contents and creates a scene of them.
+    /// Checks the given contents and creates a scene from these contents.
     ///
     /// # Errors
     ///
@@ -130,15 +131,15 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Returns the scene with these warnings about its file instead of its present ones.
+    /// Returns the scene with these warnings about its file instead of its present warnings.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;
         self
     }
 
-    /// Returns warnings about the file from which the scene was read, one sentence each. They concern content that may
-    /// have been misinterpreted. The list is empty for a scene without a file.
+    /// Returns warnings about the file from which the scene was read, one sentence each. The warnings concern content
+    /// that may have been misinterpreted. The list is empty for a scene without a file.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
@@ -207,8 +208,8 @@ impl Scene {
         self.parts
     }
 
-    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). There is
-    /// one for each structure with a motion of its own.
+    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). The list
+    /// has one matrix for each structure with a motion of its own.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
@@ -220,8 +221,8 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. It serves
-    /// code that has no model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. The copy
+    /// serves code that has no model matrices.
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.
@@ -248,7 +249,7 @@ impl Scene {
 }
 
 /// Returns the centre of the bounding box around balls (centre, radius), and the distance from this centre to the
-/// farthest point of a ball. Without balls both are zero.
+/// farthest point of a ball. Without balls the centre and the distance are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = balls
@@ -288,7 +289,7 @@ impl SceneParts {
             vertex.position = model.transform_point3(vertex.position.as_dvec3()).as_vec3();
             vertex.normal = normal.normalize_or(DVec3::Y).as_vec3();
         }
-        // The matrix scales uniformly, so the scale of one axis is also that of the radii.
+        // The matrix scales uniformly, so the scale of one axis is also the scale of the radii.
         let scale = model.x_axis.truncate().length();
         for sphere in &mut self.spheres[structure.spheres.clone()] {
             sphere.centre = model.transform_point3(sphere.centre.as_dvec3()).as_vec3();

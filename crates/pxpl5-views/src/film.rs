@@ -18,11 +18,11 @@ use thiserror::Error;
 pub enum FilmSurfaces {
     /// A single surface, such as the surface of one eye.
     One(SurfaceId),
-    /// All surfaces side by side, the first one on the left.
+    /// All surfaces side by side, the first surface on the left.
     All,
 }
 
-/// A film of an experiment. It has one frame per display period, which shows the screen at the end of the period.
+/// A film of an experiment. The film has one frame per display period, which shows the screen at the end of the period.
 ///
 /// With an NTSC display, a frame combines the lines of the current field with the lines of the previous field.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ impl Film {
         let plain = self.without_pixels()?;
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
         for period in self.first_period.until(self.first_period.after(self.periods)) {
-            // A period is over when all events at the beginning of the next one have been handled.
+            // A period is over when all events at the beginning of the next period have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
             if !take(period, frame(machine, surfaces, period, offsets.as_ref()))? {

@@ -9,7 +9,7 @@ use pxpl5_wire::display::Display;
 /// Numerator and denominator have 16 bits each. The result is the fraction nearest to the duration of a display period.
 #[must_use]
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
-    // Ticks are rounded to picoseconds. Over so many periods, the rounding is negligible.
+    // Ticks are rounded to picoseconds. Over this number of periods, the rounding is negligible.
     const PERIODS: u64 = 60_000;
     let span = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO);
     let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
@@ -50,7 +50,7 @@ impl Fraction {
 
 /// Returns the nearest fraction within the limit, by continued fractions.
 ///
-/// The result is the last convergent within the limit, or a fraction between it and the next convergent.
+/// The result is the last convergent within the limit, or a fraction between this convergent and the next.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };

@@ -81,7 +81,7 @@ pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Elemen
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
 }
 
-/// Returns a tooltip. A viewer shows it for the element that contains it.
+/// Returns a tooltip. A viewer shows the tooltip for the element that contains the tooltip.
 pub(crate) fn hint(text: impl Display) -> Element {
     Element::new("title").text(text)
 }

@@ -17,7 +17,7 @@
 //!
 //! Time is simulated time. Chrome's JSON has microseconds with six decimals, which is exact. Perfetto's timestamps are
 //! nanoseconds, rounded down. Slices of a track never overlap. A message may reach a port shortly before the previous
-//! message has left it, and is then drawn from that message's end.
+//! message has left the port. The message is then drawn from the end of the previous message.
 //!
 //! Sources: the published `.proto` files of the Perfetto project (`TracePacket`, `TrackDescriptor`, `TrackEvent`) and
 //! the description of Chrome's trace event format. **Not written:** interned strings, clock snapshots.

@@ -34,8 +34,8 @@ impl Updates {
 
     /// Returns the update that a picture shows.
     ///
-    /// If the host does not sample a pose for each picture, this is the newest update at the graphics processor when
-    /// the picture's pose was sampled.
+    /// If the host does not sample the poses, a graphics processor does. The result is then the newest update that had
+    /// arrived at this processor when it sampled the picture's pose.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);

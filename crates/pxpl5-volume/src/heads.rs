@@ -11,11 +11,11 @@
 //!   volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
 //!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
-//!   For the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
+//!   For the volume, the error is the angle between a point and the voxel that shows the point in the nearest slice.
 //! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
 //!   visual angle of this cell.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
-//!   for the pose of the eye one latency ago. It is shifted by the error of its middle.
+//!   for the pose of the eye one latency ago. This picture is then shifted by the error of its middle.
 //!
 //! # Not modelled
 //!
@@ -36,7 +36,8 @@ use tracking::Pose;
 use tracking::motion::Motion;
 use tracking::view::HmdView;
 
-/// Number of scene vertices at which errors are evaluated. It is assumed that more points would not change the mean.
+/// Number of scene vertices at which errors are evaluated. The number is assumed to be large enough: more points would
+/// not change the mean.
 pub const POINTS: usize = 512;
 
 /// Picoseconds in a second.
@@ -121,8 +122,9 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0, and then a quarter
-    /// turn until the screen reaches the changed plane. Returns `None` if the volume was not drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0 (the first flash of a
+    /// turn), and then a quarter turn until the screen reaches the changed plane. Returns `None` if the volume was not
+    /// drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;

@@ -45,7 +45,7 @@ pub struct VolumeSettings {
     pub draw: DrawNumbers,
     /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Rule for the slices of a turn that are drawn, and those that are mirrored copies.
+    /// Rule that determines which slices of a turn are drawn, and which slices are mirrored copies.
     pub strobes: Strobes,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
@@ -55,7 +55,7 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Position of the viewer before the display. It has no influence on the volume.
+    /// Position of the viewer before the display. The position has no influence on the volume.
     pub viewer: ViewerNumbers,
 }
 

@@ -29,8 +29,8 @@ const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the messages that began after an instant, at most `most` of them. If there are more, only every n-th message
-/// is returned. Messages that still occupy a channel are included.
+/// Returns the messages that began after an instant, at most `most` messages. If there are more, only every n-th
+/// message is returned. Messages that still occupy a channel are included.
 pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     let record = stepper.record();
     let name = |node| record.ports().board(node).to_string();
@@ -82,7 +82,7 @@ pub(crate) fn regions(stepper: &Stepper) -> Value {
 }
 
 /// Returns the age of the shown picture in milliseconds: the time since its head pose was sampled. The result is `null`
-/// before the first picture. It is also `null` for a pipeline whose picture combines several samples.
+/// before the first picture. The result is also `null` for a pipeline whose picture combines several samples.
 ///
 /// The field that the beam draws now is not yet evaluated. A picture in this field counts as shown if it is complete.
 /// An incomplete picture counts as shown only if the previous picture was shown, and if the missing regions can still

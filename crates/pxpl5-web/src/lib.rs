@@ -144,7 +144,7 @@ impl WebMachine {
     }
 
     /// Returns the outlines of the ideal picture at the present instant as bytes, with transparent pixels elsewhere.
-    /// The ideal picture is the one without latency. The result is empty if a surface has no ideal picture.
+    /// The ideal picture has no latency. The result is empty if a surface has no ideal picture.
     #[must_use]
     pub fn outlines(&self, surface: u16) -> Vec<u8> {
         self.0.outlines(surface)
@@ -188,8 +188,8 @@ impl WebMachine {
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
-    /// percentage of pixels that differ. It also has the mean over all pixels of the largest difference of any colour,
-    /// in per cent. The result is `null` without an ideal picture.
+    /// percentage of pixels that differ. The object also has the mean over all pixels of the largest difference of any
+    /// colour, in per cent. The result is `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
@@ -203,8 +203,8 @@ impl WebMachine {
     }
 
     /// Returns the six faces of a cube around the head that an eye's display memory holds. `eye` is 0 or 1. The faces
-    /// form a cross of 512 x 384 pixels. Without `memory` all memories are combined: each texel is the nearest one of
-    /// all. The result is empty for a display without such memories.
+    /// form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the nearest texel
+    /// of all memories. The result is empty for a display without such memories.
     #[must_use]
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
@@ -222,21 +222,22 @@ impl WebMachine {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
-    /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+    /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
     #[must_use]
     pub fn misses_all(&self) -> bool {
         look::misses_all(self.0.stepper())
     }
 
     /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
-    /// and what was not measured is null.
+    /// and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
         look::limits(self.0.stepper()).to_string()
     }
 
-    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in time
-    /// as JSON. The second number is null if the scene cannot be decimated. It can take some seconds.
+    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in
+    /// time, as JSON. The second number is null if the scene cannot be decimated. The search for the second number can
+    /// take some seconds.
     #[must_use]
     pub fn fitting(&self) -> String {
         self.0.fitting().to_string()

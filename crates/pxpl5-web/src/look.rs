@@ -1,4 +1,4 @@
-//! The state of the machine as JSON and SVG, as the page needs it.
+//! The state of the machine as JSON and SVG, in the form that the page needs.
 
 use crate::code;
 use crate::diagram;
@@ -34,8 +34,8 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
 }
 
 /// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
-/// step leads to the begin of the period before. From within a period, it leads to the same place of the period before,
-/// or to time zero.
+/// step leads to the begin of the period before. From within a period, a step leads to the same place in the period
+/// before, or to time zero.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);
@@ -46,7 +46,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
     Some(tick(before) + now.since(tick(period)))
 }
 
-/// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+/// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.so_far();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)

@@ -106,8 +106,8 @@ pub(crate) fn memories(stepper: &Stepper) -> usize {
 }
 
 /// Returns the six cube faces that a display memory shows to an eye now, arranged as a cross. Each side of a face has
-/// [`FACE_SIDE`] pixels. Without a memory's index all memories are combined: each texel is the nearest one of all.
-/// Returns `None` for a memory that does not exist.
+/// [`FACE_SIDE`] pixels. Without a memory's index, all memories are combined: each texel is the nearest texel of all
+/// memories. Returns `None` for a memory that does not exist.
 pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Option<Vec<u8>> {
     let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
     let all = display.memories(eye);

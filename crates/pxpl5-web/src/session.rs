@@ -121,10 +121,11 @@ impl Session {
         faces.unwrap_or_default()
     }
 
-    /// Returns the number of primitives in the scene, and about the number that the pipeline shows in time, as JSON.
+    /// Returns the number of primitives in the scene, and approximately the number that the pipeline shows in time, as
+    /// JSON.
     ///
     /// The second number comes from the closed form of the pipeline. For a pipeline without a closed form, runs of
-    /// decimated scenes find the number by bisection. It is null if the scene cannot be decimated.
+    /// decimated scenes find the number by bisection. The second number is null if the scene cannot be decimated.
     pub(crate) fn fitting(&self) -> Value {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
@@ -147,8 +148,8 @@ impl Session {
     }
 }
 
-/// Replaces the experiment's head motion by one that begins with a recording and grows later. The future of this motion
-/// is unknown, so a predictor is refused.
+/// Replaces the experiment's head motion by a growing motion, which begins with the recording `begin`. The future of
+/// this motion is unknown, so a predictor is refused.
 fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<GrowingRecording>), String> {
     let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {

@@ -8,7 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A convex region bounded by planes. It is described by the signs that plane equations have at its points.
+/// A convex region bounded by planes. The region is described by the signs that plane equations have at its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BinRegion {
     /// Signs of the plane equations in the region: bit i is set if the region lies on the positive side of plane i.
@@ -124,11 +124,11 @@ impl BinLayout {
 /// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector. Each of its two planes has one bit.
+/// Planes that bound each sector. Each of the sector's two planes has one bit.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
 /// The combined codes of a primitive. A bit of `and` is set if the whole primitive lies on the positive side of the
-/// plane. A bit of `or` is set if any part of it does.
+/// plane. A bit of `or` is set if any part of the primitive lies on this side.
 struct Codes {
     and: u32,
     or: u32,
@@ -161,7 +161,7 @@ impl Codes {
 }
 
 /// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
-/// second is true if any part of it does.
+/// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
 /// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.

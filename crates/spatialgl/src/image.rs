@@ -1,4 +1,4 @@
-//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther ones.
+//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther surfaces.
 
 use crate::command::Combine;
 use crate::projection::Size;

@@ -8,7 +8,7 @@ use crate::clip::HalfWedge;
 ///
 /// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. Coordinates are pixels of the
 /// slice, and values are square pixels. The projection is orthographic. A shear maps (u, v) affinely, and a perspective
-/// eye divides by w^2. Both also give quadratics.
+/// eye divides by w^2. Both projections also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.

@@ -21,7 +21,7 @@ pub struct VolumeStats {
     pub draws: u64,
     /// Number of primitives that would be drawn without bins.
     pub draws_unbinned: u64,
-    /// Number of entries in all bins. A primitive in several bins counts in each of them.
+    /// Number of entries in all bins. A primitive in several bins counts in each of these bins.
     pub bin_memberships: u64,
     /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,

@@ -186,8 +186,8 @@ parameter_table! {
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Depth of the position error by metal, at 1 m from the transmitter. Metal bends a measured plane into a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
-        /// Distance from the transmitter at which the position error by metal is half of its parabola. The error bends
-        /// a measured plane into a bowl.
+        /// Distance from the transmitter at which the position error by metal is half of `bowl` times the squared
+        /// distance in metres. The error bends a measured plane into a bowl.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
@@ -281,16 +281,16 @@ parameter_table! {
         /// Assumed strength of random changes of the head's angular acceleration. The value is the root of the spectral
         /// density of white jerk in the orientation filter.
         orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
-        /// Standard deviation of the head's speed before the first report, as a filter assumes.
+        /// Standard deviation that a filter assumes for the head's speed before the first report.
         start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
-        /// Standard deviation of the head's acceleration before the first report, as a filter assumes.
+        /// Standard deviation that a filter assumes for the head's acceleration before the first report.
         start_acceleration: f64 = 5.0, "m/s^2", Assumed, 0.01..=100.0 in 0.000001..=10000.0, "half of gravity";
-        /// Standard deviation of the head's angular velocity before the first report, as a filter assumes.
+        /// Standard deviation that a filter assumes for the head's angular velocity before the first report.
         start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0 in 0.000001..=1000.0, "the 95th percentile of recorded traces";
-        /// Standard deviation of the head's angular acceleration before the first report, as a filter assumes.
+        /// Standard deviation that a filter assumes for the head's angular acceleration before the first report.
         start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0 in 0.000001..=100000.0, "100 ms to reach the above";
-        /// Number of reports from one pose to the other when a velocity is computed as a difference of two poses. A
-        /// value of 1 takes neighbouring reports.
+        /// Distance, as a number of reports, between the two poses whose difference gives a velocity. A value of 1
+        /// stands for neighbouring reports.
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
         /// Longest time ahead for which a predictor extrapolates. For later instants the predictor returns the last
         /// reported pose.
@@ -301,10 +301,10 @@ parameter_table! {
 parameter_table! {
     /// Limits by which a predictor accepts or rejects reports.
     pub struct Gate {
-        /// Fastest translation of the head that a predictor believes. A report that implies a faster translation is
+        /// Fastest translation of the head that a predictor accepts. A report that implies a faster translation is
         /// rejected.
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
-        /// Fastest turn of the head that a predictor believes. A report that implies a faster turn is rejected.
+        /// Fastest turn of the head that a predictor accepts. A report that implies a faster turn is rejected.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
         /// Distance between two successive reported positions that noise alone can cause. The test of the speed ignores
         /// this distance.

@@ -42,7 +42,8 @@ impl TrackerConfig {
         if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
-            // Ten bits were once fixed. An experiment with this usual value keeps its old name, so the key is left out.
+            // Earlier versions always used ten bits. An experiment with this usual value keeps its old name, so the key
+            // is left out.
             if u64::from(*byte_bits) != HostPort::PAPERS.byte_bits {
                 settings("tracker.serial.byte_bits", byte_bits);
             }

@@ -91,8 +91,8 @@ pub trait Motion: Debug {
     }
 
     /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
-    /// random numbers. Prediction filters are tuned on this other motion, so they do not know the motion on which they
-    /// are evaluated.
+    /// random numbers. Prediction filters are tuned on this other motion, so the evaluated motion has no influence on
+    /// the tuning.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }

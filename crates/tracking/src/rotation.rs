@@ -6,8 +6,8 @@
 
 use glam::{DQuat, DVec3};
 
-/// Squared half angle below which [`exp`] and [`log`] use a series. Its next term is below 1e-18, so the result is
-/// exact to the last bit.
+/// Squared half angle below which [`exp`] and [`log`] use a series. The first omitted term of the series is below
+/// 1e-18, so the result is exact to the last bit.
 const SERIES_BELOW: f64 = 1e-6;
 
 /// Returns the rotation by the vector `r` (rad). Any length is allowed.

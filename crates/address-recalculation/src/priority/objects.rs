@@ -41,7 +41,7 @@ impl Objects {
     /// object from now on, in seconds.
     ///
     /// An object changes its memory only in a frame that draws both the old and the new memory. A memory is drawn in
-    /// its own frames. It is skipped if the images of all its objects stay right until its next frame.
+    /// its own frames. A memory is skipped if the images of all its objects stay right until its next frame.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 pub enum Falloff {
     /// No displacement. The images of the two memories do not meet at the border.
     None,
-    /// Linear decrease to 0.
+    /// The displacement decreases linearly to 0.
     #[default]
     Linear,
-    /// Smooth decrease to 0, with slope 0 at both ends.
+    /// The displacement decreases smoothly to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Full displacement within the length of the falloff, and none beyond.
+    /// Full displacement up to the length of the falloff from the border, and no displacement beyond.
     Step,
 }
 
@@ -27,8 +27,8 @@ impl Falloff {
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
-    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the length
-    /// of the falloff.
+    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the
+    /// distance over which the displacement decreases.
     #[must_use]
     pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
         let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
@@ -55,7 +55,7 @@ impl RegionWarp {
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the length of the falloff is not positive and finite.
+    /// Returns [`PriorityError`] if the distance over which the displacement decreases is not positive and finite.
     pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));

@@ -17,7 +17,7 @@ fn small(settings: &Settings) -> Settings {
     settings
 }
 
-/// Counts the texels in which the combined picture of all memories differs from that of a single memory.
+/// Counts the texels in which the combined picture of all memories differs from the picture of a single memory.
 ///
 /// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
 /// memories.

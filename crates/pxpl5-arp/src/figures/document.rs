@@ -113,7 +113,7 @@ fn line(text: &mut String, row: &Row) {
     );
 }
 
-/// Returns as a Markdown list the rows whose simulated numbers miss the published ones, with their known causes.
+/// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
 #[must_use]
 pub fn missed(rows: &[Row]) -> String {
     let mut text = String::new();
@@ -358,7 +358,8 @@ fn walk_line(text: &mut String, walked: &NamedWalk) {
     );
 }
 
-/// Formats the width of a tear in texels. Widths below a millionth of a texel are rounding errors and count as 0.
+/// Formats the width of a tear (gap between two memories) in texels. Widths below a millionth of a texel are rounding
+/// errors and count as 0.
 fn texels(width: f64) -> String {
     if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") }
 }

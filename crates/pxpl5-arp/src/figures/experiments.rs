@@ -1,4 +1,4 @@
-//! The experiments E2 to E9 with an ideal renderer. They are run once for all rows of the comparison.
+//! The experiments E2 to E9 with an ideal renderer. The experiments are run once for all rows of the comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
@@ -30,7 +30,7 @@ pub struct NamedWalk {
     pub report: Report,
 }
 
-/// A cell side fitted to one update rate of table 1.
+/// The side of a cell (square of the floor), fitted to one update rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Rules with which the cell side was fitted.
@@ -61,9 +61,10 @@ pub struct Experiments {
     pub interpretations: Interpretations,
     /// Thresholds of the image error, each with the cell side that fits table 1.
     pub thresholds: Vec<ThresholdRow>,
-    /// Number of segments into which the fitted cells cut the gallery.
+    /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: cut with tears, cut and warped, uncut, and warped without cascade.
+    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
+    /// updates of faster memories (cascade).
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
@@ -94,7 +95,7 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in ones are valid.
+    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
     pub fn run() -> Result<Self, WalkError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
@@ -136,7 +137,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the walk with tears for renderers of decreasing speed.
+/// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
 fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -215,8 +216,9 @@ pub struct SizeLimit {
 /// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
 /// sphere.
 ///
-/// The interpretations differ in the limited angle. The threshold limits the change of the diameter, or that of the
-/// radius, or twice the threshold limits that of the radius.
+/// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
+/// diameter covers. In the second, the threshold limits the change of the radius' angle. In the third, the limit of the
+/// radius' angle is twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];

@@ -6,15 +6,15 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// Simulated, with no parameter fitted to it.
+    /// The number is simulated, and no parameter was fitted to this number.
     Checked,
-    /// Simulated with a parameter whose value was chosen so that this row agrees.
+    /// The number is simulated with a parameter whose value was chosen so that this row agrees.
     Fitted,
-    /// Depends on facts that the papers do not print. The published number is compared with the interval over all
-    /// interpretations.
+    /// The number depends on facts that the papers do not print. The published number is compared with the interval
+    /// over all interpretations.
     Interpretation,
-    /// Cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or table is
-    /// checked.
+    /// The number cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or
+    /// table is checked.
     Shape,
 }
 
@@ -31,7 +31,7 @@ impl Standing {
     }
 }
 
-/// A published or derived number next to the simulated one.
+/// A published or derived number next to the simulated number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Name of the experiment, E1 to E9.
@@ -48,7 +48,8 @@ pub struct Row {
     /// Simulated number.
     pub ours: f64,
     pub standing: Standing,
-    /// True if the simulated number agrees to 1 percent. If the number cannot be reproduced, true if its shape agrees.
+    /// True if the simulated number agrees to 1 percent. For a number that cannot be reproduced, true if the shape of
+    /// its curve or table agrees.
     pub is_met: bool,
 }
 
@@ -61,7 +62,7 @@ impl Row {
         Self { experiment: "", id, statement: statement.to_owned(), unit, published, ours, standing, is_met }
     }
 
-    /// Creates a row for a number that cannot be reproduced. `holds` is true if its shape agrees.
+    /// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of its curve or table agrees.
     #[must_use]
     pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> Self {
         Self { is_met: holds, ..Self::number(id, statement, unit, both, Standing::Shape) }
@@ -99,7 +100,7 @@ impl Row {
         }
     }
 
-    /// Returns the known cause for which the simulated number misses the published one.
+    /// Returns the known reason why the simulated number misses the published number.
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {

@@ -99,7 +99,7 @@ impl WalkArgs {
     }
 
     /// Returns an error if the estimated time or memory of several walks (frames seen along a path) exceeds the budget.
-    /// `walks` is their number.
+    /// `walks` is the number of walks.
     ///
     /// # Errors
     ///
@@ -134,7 +134,7 @@ impl WalkArgs {
                 std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
             let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
-            // Settings of the file come first, so that later ones override them.
+            // Settings of the file come first, so that later settings override them.
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),

@@ -15,7 +15,7 @@ pub(super) enum Kind {
 /// A publication.
 #[derive(Debug)]
 pub(super) struct Work {
-    /// Short name, as the documents of the project use it. Also the key in BibTeX.
+    /// Short name, as the documents of the project use it. The same name is the key in BibTeX.
     pub(super) key: &'static str,
     /// Systems that the emulator models from this work.
     pub(super) systems: &'static str,

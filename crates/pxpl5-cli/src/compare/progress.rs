@@ -59,7 +59,7 @@ impl CompareProgress {
         self.bar.finish_and_clear();
     }
 
-    /// Returns the time left, if the runs that are left take as long as those that have ended.
+    /// Returns the time left, if the remaining runs take as long as the runs that have ended.
     fn left(&self) -> String {
         let [done, of] = [&self.runs.0, &self.runs.1].map(|count| count.load(Ordering::Relaxed));
         let left = self.begun.elapsed().as_secs_f64() / done.max(1) as f64 * of.saturating_sub(done) as f64;

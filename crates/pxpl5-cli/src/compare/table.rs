@@ -48,7 +48,7 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text
 }
 
-/// Returns a sentence for each method of the intervals, with the rows that have it.
+/// Returns a sentence for each method of the intervals, with the rows that use the method.
 fn intervals(comparison: &Comparison) -> String {
     let confidence = percent(comparison.confidence);
     let mut text = String::new();

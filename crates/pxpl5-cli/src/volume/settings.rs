@@ -19,7 +19,7 @@ use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
-/// The scene of a volume, and the settings that differ from those of the paper.
+/// The scene of a volume, and the settings that differ from the paper's settings.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .pdb, or .gltf and .glb in a build

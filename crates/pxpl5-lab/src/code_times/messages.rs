@@ -19,7 +19,8 @@ const TOKEN: u32 = 6;
 /// Node number of a board other than the measured one.
 const OTHER: NodeId = NodeId(2);
 
-/// Total time and number of a board's messages. A received message counts as one, and so does a chain that was sent.
+/// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts
+/// once.
 #[derive(Default)]
 pub(super) struct Traffic {
     span: Span,
@@ -134,9 +135,9 @@ fn token(
     traffic.send_words(processor, TOKEN)
 }
 
-/// Executes the messages of one display field on a board under Slats. The board receives the head pose. It then sends a
-/// chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two chains of
-/// copy commands to all renderers.
+/// Executes the messages of one display field on a board under Slats. The board receives the head pose. The board then
+/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two
+/// chains of copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

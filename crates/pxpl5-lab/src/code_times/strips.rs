@@ -12,7 +12,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene whose triangles are searched for those that meet a strip (a group of scan lines).
+/// Scene that is searched for triangles that meet a strip (a group of scan lines).
 const SCENE: &str = "mig";
 /// Number of boards that share the scene in the second measurement. The difference from the measurement of the whole
 /// scene gives the time of one triangle.
@@ -24,8 +24,9 @@ const FIELD_PS: u64 = 16_683_333_333;
 /// Memory address at which display lists begin. The commands in messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of order messages. They are for a strip (group of scan lines), a strip with a head
-/// pose, blocks, and a field between two head poses. The second number of each pair counts the words before the poses.
+/// Sizes in words of four kinds of order messages. The messages are for a strip (group of scan lines), a strip with a
+/// head pose, blocks, and a field between two head poses. The second number of each pair counts the words before the
+/// poses.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
@@ -47,8 +48,8 @@ pub struct StripTimes {
     /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
     /// interpolation on the screen, the second for interpolation in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Times to assemble four kinds of order messages. They are for a strip (group of scan lines), a strip with a head
-    /// pose, blocks, and a field between two head poses.
+    /// Times to assemble four kinds of order messages. The messages are for a strip (group of scan lines), a strip with
+    /// a head pose, blocks, and a field between two head poses.
     pub order_ns: [f64; 4],
 }
 

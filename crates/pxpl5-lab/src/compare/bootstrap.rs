@@ -80,9 +80,10 @@ impl BlockBootstrap {
     ///
     /// The ends are percentiles of the resampled means, with two corrections:
     ///
-    /// - Values at the ends of the series are in fewer blocks than the others. The percentiles are therefore moved to
-    ///   the given mean: by a factor if the mean is positive and all resampled means are at least 0, else by a
-    ///   difference. The interval of a quantity that is never negative has no negative end.
+    /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore moved to
+    ///   the given mean. If the mean is positive and all resampled means are at least 0, they are multiplied by a
+    ///   factor; otherwise a difference is added. The interval of a quantity that is never negative has no negative
+    ///   end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of the ends is
     ///   therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees of freedom to the
     ///   normal distribution. The second is the root of k / (k - 1).
@@ -127,7 +128,8 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Returns the mean of as many values as the series has, taken from random blocks. The last block may be cut.
+/// Returns the mean of values from random blocks. The number of values is the length of the series, so the last block
+/// may be cut.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;

@@ -3,7 +3,7 @@
 use pxpl5_measure::Showing;
 use pxpl5_run::Registry;
 
-/// One row of a comparison: a pipeline, with the settings that differ from the shared ones.
+/// One row of a comparison: a pipeline, with the settings that differ from the shared settings.
 #[derive(Clone, Debug)]
 pub(super) struct ComparedPipeline {
     pub(super) name: String,

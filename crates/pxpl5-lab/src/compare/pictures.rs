@@ -1,5 +1,5 @@
-//! Pictures of a vertical edge while the head turns (pans). They compare conventional and just-in-time pixels, as
-//! computed and as seen on the display.
+//! Pictures of a vertical edge while the head turns (pans). The pictures compare conventional and just-in-time pixels,
+//! as computed and as seen on the display.
 
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};

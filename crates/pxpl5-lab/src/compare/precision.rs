@@ -1,4 +1,4 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that it takes.
+//! The width at which the interval of a mean is narrow enough, and the number of seeds that this width needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;
@@ -26,8 +26,8 @@ pub struct UntilPrecise {
 pub const MAX_SEEDS: usize = 50;
 
 impl UntilPrecise {
-    /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not count,
-    /// because it leaves out how motions differ.
+    /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
+    /// count, because such an interval leaves out the differences between motions.
     #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
         let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
@@ -80,7 +80,7 @@ impl FromStr for Precision {
     }
 }
 
-/// Error of a text that is no precision.
+/// Error of a text that does not state a precision.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px), found `{found}`")]
 pub struct PrecisionError {

@@ -19,7 +19,7 @@ pub struct PredictorError {
     pub training: Option<Training>,
     /// Errors of position on the screen in pixels. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
-    /// Reason why the predictor has no result in `error`. `None` if it has one.
+    /// Reason why the predictor has no result in `error`. `None` if the predictor has a result.
     pub failure: Option<String>,
 }
 
@@ -28,8 +28,8 @@ pub struct PredictorError {
 pub struct Predictors {
     /// Predictor that the experiment selects.
     pub chosen: PredictorKind,
-    /// Predictor with the smallest mean error. If several are equal, the simplest of them. `None` if no error was
-    /// evaluated.
+    /// Predictor with the smallest mean error. Of several predictors with equal errors, the simplest. `None` if no
+    /// error was evaluated.
     pub best: Option<PredictorKind>,
     /// Results of all predictors, from the simplest on.
     pub each: Vec<PredictorError>,
@@ -44,8 +44,8 @@ impl Predictors {
 }
 
 /// Runs an experiment once with each predictor. All other settings stay the same. If the experiment's own predictor is
-/// tuned, all are tuned for the pipeline's prediction interval and the motion. Returns `None` for an experiment without
-/// a head. No pixels are computed.
+/// tuned, all predictors are tuned for the pipeline's prediction interval and the motion. Returns `None` for an
+/// experiment without a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;

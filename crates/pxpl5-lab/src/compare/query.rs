@@ -73,7 +73,8 @@ pub struct Comparison {
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
-    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if it did not ask.
+    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if the query asked for no
+    /// precision.
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
     pub max_seeds: Option<usize>,
@@ -285,7 +286,7 @@ impl CompareQuery {
         }
     }
 
-    /// Returns seeds that follow the seeds of the query and those that were added before.
+    /// Returns seeds that follow the seeds of the query and the seeds that were added before.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;

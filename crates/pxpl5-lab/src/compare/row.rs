@@ -40,7 +40,7 @@ pub struct CauseShare {
     pub px: MeanInterval,
 }
 
-/// Mean error of a comparison row when another predictor replaces its own.
+/// Mean error of a comparison row when another predictor replaces the row's own predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the row's own predictor.
@@ -75,8 +75,9 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the time
-    /// from the measured pose to the arrival of its report, the second from the start of an eye's TRANSFORM to the swap.
+    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
+    /// time from the measured pose to the arrival of its report. The second is the time from the start of an eye's
+    /// TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
     /// EDIT and the scan.
@@ -198,7 +199,7 @@ impl ComparisonRow {
     }
 }
 
-/// Sample of runs behind a row.
+/// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     /// Number of seeds.
@@ -253,7 +254,7 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 
 impl ErrorSpread {
     /// Combines the errors of all runs. Several motions give an interval over the seeds. One motion gives an interval
-    /// over time, because further seeds do not move the head otherwise.
+    /// over time, because further seeds do not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
         let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
@@ -275,8 +276,8 @@ impl ErrorSpread {
         spread
     }
 
-    /// Replaces the interval of the mean by that of a bootstrap over the fields. The interval has no ends if the run is
-    /// too short for a bootstrap.
+    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. The interval has no ends if
+    /// the run is too short for a bootstrap.
     fn bootstrap_over_time(&mut self, judged: &[&Trial], confidence: f64) {
         let mean = self.mean_px.mean;
         let bootstrap = BlockBootstrap::of(&mean_of_fields(judged));

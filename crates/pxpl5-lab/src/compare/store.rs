@@ -5,8 +5,8 @@
 //!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
 //! ```
 //!
-//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
-//! removed, and only its row is computed again.
+//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
+//! incomplete line is removed, and only the row of this line is computed again.
 
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
@@ -156,7 +156,7 @@ impl Header {
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
         let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
-        // The hash comes last, because a key tells more.
+        // The hash comes last, because the name of a key is more helpful in an error.
         let pairs = [
             ("schema", self.schema.clone(), found.schema.clone()),
             ("version", self.version.clone(), found.version.clone()),

@@ -102,8 +102,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the prediction intervals in milliseconds. Each reaches from the newest measurement behind a head pose to the
-/// instant for which the picture with this pose is drawn.
+/// Returns the prediction intervals in milliseconds. Each interval reaches from the newest measurement behind a head
+/// pose to the instant for which the picture with this pose is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

@@ -12,7 +12,8 @@ pub(super) const NUMBERS: &str = "display.";
 /// Name of the preset that display parameters change if the file names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. It has one name in the file and one in the display's table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file and another name in the display's
+/// table of parameters.
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
@@ -87,7 +88,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         set(config.as_mut(), key, path, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
-        // The message names the number of the table; the place is that of the key which sets it.
+        // The message names the number of the table; the place is the place of the key that sets this number.
         let reason = error.to_string();
         let named = given.iter().find(|(key, ..)| reason.contains(&format!(".{}:", key.parameter)));
         let (_, path, setting) = named.unwrap_or(first);

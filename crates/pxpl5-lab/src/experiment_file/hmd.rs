@@ -92,7 +92,7 @@ fn expected(error: &RangeError) -> &'static str {
     }
 }
 
-/// Returns the parameters that differ from those of the papers' display, with their keys.
+/// Returns the parameters whose values differ from the papers' display, with their keys.
 pub(super) fn settings(hmd: &Hmd) -> impl Iterator<Item = (&'static str, Value)> {
     let config = *hmd.config();
     let usual = HmdConfig::unc();

@@ -102,7 +102,7 @@ const COMMON: &[(&str, &str)] = &[
 /// Former names of keys, each with the current name.
 const RENAMED: [(&str, &str); 2] = [("head.display", "head.raster"), ("display.preset", "display")];
 
-/// Returns all keys except those of the machine's parameters. A parameter's key is `machine.` followed by a path of
+/// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {

@@ -85,11 +85,11 @@ pub struct Plan {
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
-    /// Head with its tracker. `None` if the head moves as the scene says, without tracking delay.
+    /// Head with its tracker. `None` if the head follows the scene's own motion, without tracking delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display that the viewer wears.
     pub hmd: Hmd,
-    /// Choice of the pixels that are computed. By default only pixels that are read later.
+    /// Choice of the pixels that are computed. By default, only pixels that are read later are computed.
     pub pixels: Pixels,
     /// Quantities that tables and rows of results contain.
     pub measure: Vec<Measure>,
@@ -304,8 +304,9 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head, those
-    /// of the tracker, the host's port and the predictor. Paths of tracking parameters begin with `tracking.`.
+    /// Returns all parameters of the experiment. These are the parameters of the machine and, with a tracked head, the
+    /// parameters of the tracker, the host's port and the predictor. Paths of tracking parameters begin with
+    /// `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);

@@ -7,7 +7,7 @@ use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::Registry;
 use toml::Value;
 
-/// Units of one quantity, such as time. Each has its size as a multiple of the first unit.
+/// Units of one quantity, such as time. Each unit has its size as a multiple of the first unit.
 type Kind = &'static [(&'static str, f64)];
 
 const TIMES: Kind = &[("ps", 1.0), ("ns", 1e3), ("us", 1e6), ("ms", 1e9), ("s", 1e12)];
@@ -58,7 +58,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     Ok(Some(value(number * from / to)))
 }
 
-/// Splits a text into a number and a unit. Returns `None` if one of them is missing.
+/// Splits a text into a number and a unit. Returns `None` if the number or the unit is missing.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // An exponent belongs to the number; no unit begins with e.

@@ -24,8 +24,8 @@ pub struct FigureGroup {
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that are varied for the figure's interval. One at a time, each takes both ends of its
-    /// range.
+    /// Paths of the parameters that are varied for the figure's interval. One parameter at a time takes both ends of
+    /// its range.
     pub(super) moved_by: &'static [&'static str],
 }
 

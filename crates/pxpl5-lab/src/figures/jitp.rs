@@ -1,5 +1,5 @@
-//! Figures of just-in-time pixels (Mine and Bishop). They concern errors while the head turns, the duration of a line,
-//! the number of transforms, and the pictures of an edge.
+//! Figures of just-in-time pixels (Mine and Bishop). The figures concern errors while the head turns, the duration of a
+//! line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -29,7 +29,7 @@ const PAN: f64 = 200.0;
 /// Horizontal resolution of the paper's picture in pixels per degree.
 const PX_PER_DEG: f64 = 10.0;
 
-/// Number of the field that is evaluated. It is even, and long after the start.
+/// Number of the field that is evaluated. The number is even, and the field is long after the start.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
 /// Number of the evaluated column in the 640 x 480 picture.
@@ -148,7 +148,7 @@ fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
-/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in one of just-in-time pixels.
+/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in a picture of just-in-time pixels.
 fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);

@@ -35,7 +35,7 @@ pub struct Bench {
     pub seeds: u64,
     /// Number of evaluated frames for each seed in the experiment of figure 7.
     pub frames: u64,
-    /// Interpretation of the papers: answers to the questions that they leave open about Rendering Control.
+    /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
@@ -187,8 +187,8 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c: as many screen-filling triangles as the bins hold according to the
-    /// papers.
+    /// Runs the experiment of figures 16b and 16c: the number of screen-filling triangles that fit into the bins
+    /// according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
@@ -395,7 +395,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-/// Returns the number of complete pictures shown per second, or 0 if none was shown.
+/// Returns the number of complete pictures shown per second, or 0 if no picture was shown.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
@@ -420,9 +420,10 @@ mod tests {
     ///
     /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
     /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
-    /// columns of regions, and three the four rows. The triangle's bounding box touches on average `(1 + 4 (leg - 1) /
-    /// width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the box. Some boxes contain
-    /// a point where four regions meet. In half of these cases the triangle therefore touches one region less.
+    /// columns of regions, and three borders separate the four rows. The triangle's bounding box touches on average
+    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the
+    /// box. Some boxes contain a point where four regions meet. In half of these cases the triangle therefore touches
+    /// one region less.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;

@@ -27,7 +27,8 @@ const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 /// compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured. They run one after the other, with nothing else at the same time.
+/// Number of experiments whose speed is measured. The experiments run one after the other, with nothing else at the
+/// same time.
 const TIMED: u64 = 16;
 
 /// Parameters of a comparison of levels of modelling.
@@ -35,7 +36,7 @@ const TIMED: u64 = 16;
 pub struct LevelQuery {
     /// Number of random experiments for which each level is compared with the cycle level.
     pub experiments: u64,
-    /// True if simulation speeds are measured as well. They are meaningful only on an otherwise idle computer.
+    /// True if simulation speeds are measured as well. Speeds are meaningful only on an otherwise idle computer.
     pub speeds: bool,
 }
 

@@ -21,8 +21,8 @@ const FIELDS: (u64, u64) = (48, 14);
 ///
 /// # Errors
 ///
-/// Never returns [`ExperimentError::Scene`], because the scenes are built in, or [`ExperimentError::Config`], because
-/// the parameters exist.
+/// [`ExperimentError::Scene`] never occurs, because the scenes are built in. [`ExperimentError::Config`] never occurs,
+/// because the parameters exist.
 pub fn experiment(number: u64) -> Result<Experiment, ExperimentError> {
     let mut random = SplitMix64::new(number << 8 | 0x1e);
     let experiment = if number.is_multiple_of(2) { stereo(&mut random)? } else { slats(&mut random)? };

@@ -135,7 +135,7 @@ impl OverQuery {
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
     /// goal, the search bisects from there to either side. The limit is therefore exact if all values on one side of
-    /// the limit reach the goal and all on the other side miss.
+    /// the limit reach the goal and all values on the other side miss.
     ///
     /// # Errors
     ///
@@ -199,7 +199,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not.
+    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not reach the
+    /// goal.
     fn reaches(&mut self, number: u64) -> bool {
         if let Some(trial) = self.trials.get(&number) {
             return trial.reached;

@@ -27,7 +27,7 @@ pub struct FigureFit {
 /// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The interpretation of the papers: its answers to their open questions.
+    /// The interpretation of the papers: the answers to the papers' open questions.
     pub reading: Reading,
     /// The interpretation of the papers in words.
     pub words: String,
@@ -40,8 +40,8 @@ pub struct Fit {
     /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant. See
     /// [`FigureFit::log_likelihood`].
     pub log_likelihood: f64,
-    /// Numbers of the figures that the interpretation does not explain. Their error exceeds 8 %, or their standard
-    /// deviation differs by more than a quarter.
+    /// Numbers of the figures that the interpretation does not explain. The error of such a figure exceeds 8 %, or its
+    /// standard deviation differs by more than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 

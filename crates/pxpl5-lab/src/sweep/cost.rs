@@ -1,5 +1,5 @@
-//! Estimates the cost of points before they run. The estimates are those of [`crate::estimate`]. The analytic level
-//! (closed form) gives the number of pictures.
+//! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
+//! form) gives the number of pictures.
 //!
 //! Callers that distribute points over computers correct the estimates by the durations of finished points.
 
@@ -16,9 +16,9 @@ const POINT: f64 = 3e-3;
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, it gives the
-    /// number of pictures. An invalid point costs almost nothing. Points that differ only in their seed get the same
-    /// estimate.
+    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, the closed
+    /// form gives the number of pictures. An invalid point costs almost nothing. Points that differ only in their seed
+    /// get the same estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()

@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels (JITP). It divides a picture into strips of lines and draws each strip for the
-/// instant at which the strip is displayed.
+/// The pipeline of just-in-time pixels (JITP). The pipeline divides a picture into strips of lines and draws each strip
+/// for the instant at which the strip is displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
@@ -120,7 +120,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
-    // Slaves have the same list and views, so the simulator transforms each field once for all of them.
+    // Slaves have the same list and views, so the simulator transforms each field once for all slaves.
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
         let gp = machine.processor(*node, Priority::Foreground);

@@ -42,7 +42,7 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions. The first one is the default.
+    /// All actions. The first action is the default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.

@@ -24,7 +24,7 @@ pub enum Code {
     Of1994,
     /// Code of 1995 (I3D95).
     Of1995,
-    /// Code that fits in the instruction cache. It takes a third of the time of the 1994 code (I3D95).
+    /// Code that fits in the instruction cache and takes a third of the time of the 1994 code (I3D95).
     Optimised,
 }
 
@@ -221,7 +221,7 @@ impl PictureRules for Slats {
             let whole = copied.regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
             let in_its_period = whole && copied.at <= record.tick(field.next());
-            // Under a backup, the swaps tell in which period the picture was shown.
+            // Under a backup, the swaps determine in which period the picture was shown.
             let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
             let picture_end = match (&backup, shown) {
                 (None, _) => PictureResult::of(in_its_period, !late.contains(&field)),
@@ -286,8 +286,8 @@ impl PictureRules for Slats {
     }
 }
 
-/// Largest number of retraces from a late field's own retrace to the last retrace at which the field can still be shown
-/// under a backup. The lines of the field are scanned twice more within this number.
+/// Number of retraces after a late field's own retrace within which a backup can still show the field. Within these
+/// retraces, the lines of the field are scanned twice more.
 const LATER_RETRACES: u64 = 4;
 
 /// State of the copy of a field to the display.
@@ -414,8 +414,8 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 
 /// Returns the criterion by which the largest scene is found.
 ///
-/// If clumps go to all regions, the test scene has full-screen triangles. If clumps go only to touched regions, the
-/// test scene has small triangles.
+/// If clumps (groups of triangles) go to all regions, the test scene has full-screen triangles. If clumps go only to
+/// touched regions, the test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

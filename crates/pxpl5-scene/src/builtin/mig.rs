@@ -168,8 +168,8 @@ impl Cut {
     }
 }
 
-/// Adds a wing or fin between cross-sections that run from root to tip. A surface on the right side needs `turned`
-/// cross-sections, in reverse order of points.
+/// Adds a wing or fin between cross-sections that run from root to tip. `turned` reverses the points of each
+/// cross-section, as a surface on the right side needs.
 fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: Colour, tip: Colour) {
     let sections: Vec<Vec<DVec3>> = if turned { sections.into_iter().map(reversed).collect() } else { sections };
     let first = solid.mesh.positions.len();

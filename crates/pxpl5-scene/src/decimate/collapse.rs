@@ -88,7 +88,7 @@ impl<'s, 'a> Decimator<'s, 'a> {
         Self { surface, quadrics, changes: vec![0; points] }
     }
 
-    /// Collapses edges, the cheapest first. It ends when `wanted` triangles remain or no edge can be collapsed.
+    /// Collapses edges, the cheapest first, until at most `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;

@@ -1,4 +1,4 @@
-//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. It
+//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. A model
 //! therefore needs at most seven times the memory of the file.
 
 use std::hash::{BuildHasher, RandomState};
@@ -132,7 +132,7 @@ pub(super) struct Model {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
-    /// Number of bytes of other files that belong to the model. They count as part of the model's file.
+    /// Number of bytes of other files that belong to the model. These bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
@@ -158,8 +158,8 @@ impl Model {
         }
     }
 
-    /// Replaces the triangles of a concave polygon. The triangles from index `first` on all share its first corner and
-    /// cover its notches. The new triangles leave the notches open.
+    /// Replaces the triangles of a concave polygon, which begin at index `first`. The old triangles all share the
+    /// polygon's first corner and also cover areas outside the polygon. The new triangles cover only the polygon.
     pub(super) fn cut_polygon(&mut self, first: usize) {
         match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
             Cut::Fan => {}
@@ -287,7 +287,7 @@ impl Model {
     }
 
     /// Returns the number of the group of vertices that share one mean normal with this vertex. Faces of different
-    /// colours share groups at their common points. Faces of different smoothing groups do not.
+    /// colours share groups at their common points. Faces of different smoothing groups share no group.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
@@ -297,8 +297,8 @@ impl Model {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. All of
-    /// them together would need as much memory as the positions.
+    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. The
+    /// sums of all groups together would need as much memory as the positions.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
@@ -326,8 +326,8 @@ impl Model {
         }
     }
 
-    /// Removes the vertices that no triangle uses. They would change the model's position and size and cost time in
-    /// every frame.
+    /// Removes the vertices that no triangle uses. Unused vertices would change the model's position and size, and
+    /// would cost time in every frame.
     fn remove_unused_points(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {

@@ -79,12 +79,12 @@ struct Rows<'a> {
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// Number of bytes at the start of a file in which an error is searched if the header has no end. Assumed, a few lines
-/// or more.
+/// If a header has no end, the reader searches this number of bytes at the start of the file for the error. Assumed: a
+/// few lines or more.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes
-/// that are not ASCII become underscores. They occur only in comments and names.
+/// that are not ASCII become underscores. Such bytes occur only in comments and names.
 fn header_of(bytes: &[u8]) -> (String, usize, u8) {
     let begin = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
     // If the first CR has no LF after it, lines end in CR alone.
@@ -492,8 +492,8 @@ fn message(error: &ParseError) -> String {
     words.join(" ").chars().take(200).collect()
 }
 
-/// Returns the least size of an element's row in bytes. It is at least one, even for rows without properties. Otherwise
-/// a header could announce any number of them.
+/// Returns the least size of an element's row in bytes. The size is at least 1, even for rows without properties.
+/// Otherwise a header could announce any number of such rows.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
         // In ASCII a number takes at least a digit and a space or line end.

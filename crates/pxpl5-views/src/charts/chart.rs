@@ -35,7 +35,7 @@ pub struct ChartPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker. It shows that the value cannot be compared with the others.
+    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
     pub is_hollow: bool,
 }
 
@@ -82,7 +82,7 @@ pub struct Chart {
     pub across: AxisScale,
     /// Scale of the vertical axis.
     pub up: AxisScale,
-    /// Series to draw. Later series cover earlier ones.
+    /// Series to draw. Later series cover earlier series.
     pub series: Vec<ChartSeries>,
     /// Size of the chart.
     pub size: ChartSize,

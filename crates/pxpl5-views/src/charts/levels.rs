@@ -47,7 +47,7 @@ fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
         let slower = b.fields_per_host_second.total_cmp(&a.fields_per_host_second);
         slower.then(a.mean_error_percent.total_cmp(&b.mean_error_percent))
     });
-    // From the fastest entry on, an entry is kept if it is more accurate than all faster ones.
+    // From the fastest entry on, an entry is kept if it is more accurate than all faster entries.
     let mut best: Vec<&SpeedAndError> = Vec::new();
     for level in sorted {
         if best.last().is_none_or(|last| level.mean_error_percent < last.mean_error_percent) {

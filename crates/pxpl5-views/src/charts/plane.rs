@@ -21,7 +21,7 @@ pub struct MarkedPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker. It shows that the value cannot be compared with the others.
+    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
     pub is_hollow: bool,
 }
 
@@ -73,8 +73,8 @@ mod tests {
         found.filter_map(|node| node.attribute(name)).map(str::to_owned).collect()
     }
 
-    /// Returns the corners of the curves in whole drawing units. The first curve is black like the axes, so the stroke
-    /// width selects the curves.
+    /// Returns the corners of the curves in whole drawing units. The first curve and the axes are black, so the
+    /// function recognizes curves by the width of their strokes.
     fn courses(svg: &str) -> Vec<Vec<(f64, f64)>> {
         let document = roxmltree::Document::parse(svg).expect("XML");
         let lines = document.descendants().filter(|node| node.has_tag_name("polyline"));

@@ -33,7 +33,7 @@ fn of_how_many(n: &Value) -> Option<Element> {
     }
 }
 
-/// Returns the numbers of due pictures by result. If the scene was too heavy, a prominent line says so.
+/// Returns the numbers of due pictures by result. If the scene was too heavy, a prominent line states this.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
         let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));

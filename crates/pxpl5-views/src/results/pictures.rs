@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Name and version of the table's schema. Adding a column at the end does not change the version.
 pub const SCHEMA: &str = "pxpl5-pictures/2";
 
-/// A column of the table. The values are whole numbers, and some of them may be missing.
+/// A column of the table. The values are whole numbers, and some values may be missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name of the column, with the unit.

@@ -46,7 +46,7 @@ pub(super) struct Words {
 pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     let mut drawing = Drawing::new(timeline);
     drawing.begin(words);
-    // Later elements cover earlier ones: background, axis, bars, then arrows.
+    // Later elements cover earlier elements: background, axis, bars, then arrows.
     drawing.for_each_row(Drawing::row);
     drawing.axis();
     drawing.for_each_row(Drawing::bars);

@@ -19,8 +19,8 @@ pub struct Bar {
     /// True for the bottom half of a picture whose halves are copied separately, false for the top half. `None` for a
     /// whole picture.
     pub bottom: Option<bool>,
-    /// First line of the surface that the work of this bar fills, such as the first line of a bottom half. 0 for work that
-    /// fills no lines.
+    /// First line that the work of this bar fills on the surface, for example the first line of a bottom half. The
+    /// value is 0 for work that fills no lines.
     pub first_line: u32,
     /// Time at which the first board began this work.
     pub begin: Time,
@@ -32,7 +32,7 @@ pub struct Bar {
     pub receiving: Vec<(Time, Time)>,
 }
 
-/// A row of a timeline, for a resource that works independently of the others.
+/// A row of a timeline, for a resource that works independently of other resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
     /// Name on the left of the row.
@@ -41,7 +41,8 @@ pub struct TimelineRow {
     pub bars: Vec<Bar>,
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
-    /// Pictures that the port of this row showed. Empty unless the row belongs to a port that swaps independently.
+    /// Pictures that the port of this row showed. The list is empty unless the row belongs to a port that swaps
+    /// independently.
     pub shown: Vec<ShownPicture>,
 }
 

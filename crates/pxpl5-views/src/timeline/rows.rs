@@ -105,7 +105,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Labels the bars that are halves of a picture. A picture has halves if the surface received both of them.
+/// Labels the bars that are halves of a picture. A picture has halves if the surface received both halves.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();

@@ -4,7 +4,7 @@ use pxpl5_machine::Record;
 use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{NodeId, SurfaceId};
 
-/// A group of tracks with a heading. It stands for a board at a port of the ring or for a surface of a display.
+/// A group of tracks with a heading. The group stands for a board at a port of the ring or for a surface of a display.
 ///
 /// A frame buffer is both a board and a surface, and has one group.
 pub(super) struct Group {

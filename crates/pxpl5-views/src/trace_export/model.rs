@@ -25,7 +25,7 @@ pub struct Track {
     pub events: Events,
 }
 
-/// The events of a track. All of them have the same kind.
+/// The events of a track. All events of a track have the same kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Events {
     /// Slices that do not overlap.

@@ -6,8 +6,8 @@ use crate::settings::VolumeSettings;
 use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
-/// Returns the text of docs/volumetric.md. It has every figure, the definitions, the statements without numbers, the
-/// scenes, and our own numbers with their ranges.
+/// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
+/// the scenes, and our own numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -95,7 +95,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Returns the known cause for which the model misses the figure with this identifier.
+/// Returns the known reason why the model misses the figure with this identifier.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {

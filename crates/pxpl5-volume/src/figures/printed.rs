@@ -63,8 +63,8 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Vo
     Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
 }
 
-/// Returns figure P2. Points on a circle around the axis meet each plane on both sides, and points on the axis are in
-/// both planes.
+/// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
+/// each twice. The second row counts the slices whose planes both contain the axis.
 fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let view = &display.views()[7];
     let steps = 100_000;
@@ -91,7 +91,7 @@ fn has_axis(view: &SliceView) -> bool {
     closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
 }
 
-/// Returns points of a grid beside the axis. Many of them lie in boundary planes.
+/// Returns points of a grid beside the axis. Many points lie in boundary planes.
 fn grid() -> impl Iterator<Item = [f64; 3]> {
     let side = -60..=60i32;
     let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));

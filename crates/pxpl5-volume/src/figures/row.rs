@@ -43,7 +43,7 @@ impl DefinitionRow {
 pub struct Figures {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// One row for each figure that the code computes or counts: printed figures by number, then derived ones.
+    /// One row for each figure that the code computes or counts: printed figures by number, then derived figures.
     pub figures: Vec<FigureRow>,
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<DefinitionRow>,

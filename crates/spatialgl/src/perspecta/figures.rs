@@ -35,7 +35,8 @@ pub struct Figure {
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
-    /// Printed or derived value. If the paper says "over" or "about", it is the middle or the end of the interval.
+    /// Printed or derived value. If the paper says "over" or "about", the value is the middle or the end of the
+    /// interval.
     pub published: f64,
     /// Least and greatest computed value that count as agreement with the figure.
     pub interval: [f64; 2],
@@ -98,7 +99,7 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. Its number is printed in the paper if `id` begins with P, and otherwise derived.
+/// Returns a definition. The number is printed in the paper if `id` begins with P. Otherwise the number is derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
 }

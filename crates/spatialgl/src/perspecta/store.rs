@@ -7,7 +7,7 @@ use pxpl5_wire::{Word, read_swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice. Both stores share them until one store writes to them.
+/// The words of one slice. Both stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
 /// Two volumes of N slices.
@@ -116,8 +116,8 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// Handles strobe 0. Shows the store that was requested before (not at) this instant, if all its tiles have
-    /// arrived. Returns the buffer if it was swapped.
+    /// Handles strobe 0, the first flash of a revolution. Shows the store that was requested before (not at) this
+    /// instant, if all its tiles have arrived. Returns the buffer if it was swapped.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
         let is_whole = self.missing.is_empty();

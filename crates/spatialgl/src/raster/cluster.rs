@@ -17,7 +17,7 @@ struct Ball {
     radius: f64,
 }
 
-/// The spheres around each primitive of a cluster, stored side by side so that one loop tests all of them.
+/// The spheres around each primitive of a cluster, stored side by side so that one loop tests all spheres.
 #[derive(Clone, Copy, Debug, Default)]
 struct BallLanes {
     centre: [[f64; CLUSTER]; 3],

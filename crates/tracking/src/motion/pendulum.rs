@@ -11,8 +11,8 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
 
-/// An undamped pendulum that swings in the x-y plane, with the exact formula of its motion. At time 0 it is released at
-/// rest at the angle `+amplitude`.
+/// An undamped pendulum that swings in the x-y plane, with the exact formula of its motion. At time 0 the pendulum is
+/// released at rest at the angle `+amplitude`.
 ///
 /// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), where cd is Jacobi's elliptic
 /// function. The exact period is 4 K(k) / w, where K is the complete elliptic integral. The small-angle period 2 pi / w

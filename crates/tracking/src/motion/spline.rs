@@ -14,8 +14,8 @@ const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 /// Number of successive knots with the same activity level, so that calm and lively periods last some seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
-/// The distribution of the random activity level of a head. The level is a factor of the motion's amplitude: calm + (1
-/// - calm) u^power with uniform u, scaled to a mean square of 1.
+/// The distribution of the random activity level of a head. The level multiplies the motion's amplitude. With u uniform
+/// in 0 to 1, the level is `calm + (1 - calm) u^power`, scaled to a mean square of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Activity {
     pub(super) calm: f64,

@@ -24,8 +24,9 @@ pub enum PredictorKind {
     ConstantVelocity,
     /// Constant acceleration: the last reported pose plus velocity x time plus half the acceleration x time squared.
     ConstantAcceleration,
-    /// Two Kalman filters. The linear one for position has the state [p, v, a], and the extended one for orientation
-    /// [q, omega, domega].
+    /// Two Kalman filters. The filter for position is linear, and its state [p, v, a] is position, velocity and
+    /// acceleration. The filter for orientation is extended, and its state [q, omega, domega] is quaternion, angular
+    /// velocity and angular acceleration.
     Kalman,
 }
 
@@ -52,15 +53,15 @@ pxpl5_sim::parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map
 pub struct PredictorConfig {
     /// Prediction method of the predictor.
     pub kind: PredictorKind,
-    /// Number of reports, 1 to 16, from one position to the other when a velocity is computed as a difference. Kalman
-    /// filters ignore this number.
+    /// Distance, as a number of reports from 1 to 16, between the two positions whose difference gives a velocity.
+    /// Kalman filters ignore this number.
     pub position_baseline: u32,
-    /// Number of reports, 1 to 16, from one orientation to the other when an angular velocity is computed as a
-    /// difference. Kalman filters ignore this number.
+    /// Distance, as a number of reports from 1 to 16, between the two orientations whose difference gives an angular
+    /// velocity. Kalman filters ignore this number.
     pub orientation_baseline: u32,
-    /// Random position error of a report that the filter assumes, rms along each axis, m.
+    /// Random position error that the filter assumes for each report, rms along each axis, m.
     pub position_noise_m: f64,
-    /// Random orientation error of a report that the filter assumes, rms about each axis, degrees.
+    /// Random orientation error that the filter assumes for each report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
     /// Assumed strength of random changes of the head's acceleration, m/s^3/sqrt(Hz): the root of the spectral density
     /// of white jerk.

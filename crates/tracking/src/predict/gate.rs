@@ -15,9 +15,9 @@ pub struct ReportCounts {
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
     /// Number of reports rejected because of their time stamp. Such a report was not newer than the last accepted
-    /// report, or followed this report by less than [`table::Gate`]'s `interval`.
+    /// report, or followed this report by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
-    /// Number of reports rejected because a head cannot move so fast.
+    /// Number of reports rejected because they imply a speed that no head reaches.
     pub jumps: u64,
     /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
     /// and a report that confirmed a jump.

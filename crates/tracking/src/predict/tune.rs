@@ -15,8 +15,8 @@ use crate::tracker::{TrackerModel, TrackerReport};
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports on which a filter is tuned: those of a 120 Hz tracker in `TRAINING_S`. A faster tracker
-/// reaches the limit sooner.
+/// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
+/// tracker reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the evaluated run has this seed, the tuning uses the next
@@ -36,7 +36,7 @@ const LONGEST_BASELINE: u32 = 16;
 /// The conditions under which a prediction filter was tuned, and the errors that remained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// Time from the instant at which a report was true to the predicted instant, ps.
+    /// Time from the instant at which a reported pose was true to the predicted instant, ps.
     pub interval_ps: u64,
     /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
     /// motion.
@@ -45,7 +45,8 @@ pub struct Training {
     pub seconds: f64,
     /// Number of reports from which a prediction was evaluated.
     pub reports: u64,
-    /// Seed of the tracker's noise during the tuning. This seed always differs from that of the evaluated run.
+    /// Seed of the tracker's noise during the tuning. This seed always differs from the seed of the noise in the
+    /// evaluated run.
     pub seed: u64,
     /// Mean distance between predicted and true position after the tuning, m.
     pub mean_m: f64,
@@ -62,19 +63,19 @@ pub struct Tuned {
     pub training: Option<Training>,
 }
 
-/// Returns a seed for the tracker's noise during the tuning. It always differs from `judged`, the seed of the noise in
-/// the evaluated run.
+/// Returns a seed for the tracker's noise during the tuning. The result always differs from `judged`, the seed of the
+/// noise in the evaluated run.
 pub fn training_seed(judged: u64) -> u64 {
     if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
 
-/// Finds the predictor settings with the least mean error on a motion. Predictions are for `interval_ps` after the
-/// instant at which a report was true.
+/// Finds the predictor settings with the least mean error on a motion. The predicted instant is `interval_ps` after the
+/// instant at which the reported pose was true.
 ///
 /// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a prediction by differences, the search covers the baseline: 1 to 16 reports from one pose to the other. Position
-/// and orientation have separate values. The assumed noise of reports is the tracker's own. The assumed speeds and
-/// accelerations before the first report are the root mean squares of the motion.
+/// a prediction by differences, the search covers the baseline: the 1 to 16 reports between the two poses of a
+/// difference. Position and orientation have separate values. The assumed noise of reports is the tracker's own. The
+/// assumed speeds and accelerations before the first report are the root mean squares of the motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,

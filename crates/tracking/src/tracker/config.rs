@@ -7,8 +7,8 @@ use crate::config::{self as table, Tables};
 /// Settings of a tracker, its cable and the host's serial port. The presets take every number from [`crate::config`].
 ///
 /// The tracker begins measurement n (called a solution) at sync signal n, at the time n x receivers / rate.
-/// `sync_to_output_ps` later the measurement is ready for the cable. The latencies are ages: at this instant, the
-/// measured pose was true `position_latency_ps` or `orientation_latency_ps` ago.
+/// `sync_to_output_ps` later the measurement is ready for the cable. At this instant, the measured position has the age
+/// `position_latency_ps`, and the measured orientation has the age `orientation_latency_ps`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -169,8 +169,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the same tracker with this latency for both position and orientation. The time from sync to output
-    /// becomes the same.
+    /// Returns the same tracker with this latency for both position and orientation. The time from the sync signal to
+    /// the first character becomes equal to the latency.
     pub fn with_latency_ps(self, latency_ps: u64) -> Self {
         Self {
             sync_to_output_ps: latency_ps,

@@ -21,7 +21,8 @@ pub struct MagneticDistortion {
     pub towards_metal: DVec3,
     /// Position error per squared distance from the transmitter, m per square metre, valid near the transmitter.
     pub depth_per_m2: f64,
-    /// Distance from the transmitter at which the position error is half of its parabola, m.
+    /// Distance from the transmitter at which the position error is half of `depth_per_m2` times the squared distance,
+    /// m.
     pub reach_m: f64,
 }
 

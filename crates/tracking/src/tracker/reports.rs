@@ -116,8 +116,8 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if a fault loses this measurement. All measurements within a dropout interval are skipped in one
-    /// step.
+    /// Returns true if a fault causes the loss of this measurement. All measurements within a dropout interval are
+    /// skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -161,7 +161,7 @@ impl<M: Motion> Reports<M> {
     }
 
     /// Sends a finished measurement at `ready_ps` if the cable is free. Returns the instant at which the host receives
-    /// it, or `None` if the cable is busy.
+    /// the measurement, or `None` if the cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;

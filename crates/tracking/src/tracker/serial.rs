@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::config::{self as table, Tables};
 use crate::time::PS_PER_S;
 
-/// The serial cable from tracker to host. It carries one record at a time.
+/// The serial cable from tracker to host, which carries one record at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SerialLine {

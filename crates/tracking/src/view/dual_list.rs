@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::HmdView;
 
 /// Interpolates a vertex between its positions on the screen at the times T0 and T1. `start` and `end` are the vertex
-/// in head axes (m) at these times. Returns `None` if either is behind the eye.
+/// in head axes (m) at these times. Returns `None` if the vertex is behind the eye at T0 or T1.
 pub fn screen_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     Some(view.project(start)?.lerp(view.project(end)?, s))
 }

@@ -1,4 +1,4 @@
-//! Policy `cells`: assigns the cells around the user to the display memories.
+//! Policy `cells`: assigns the cells (squares of the floor) around the user to the display memories.
 
 use super::plan::{Due, DuePolicy, Updates, place};
 use address_recalculation::priority::{Cell, Cells, Falloff, PriorityTiming};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Region priority rendering: assigns each structure to the fastest memory of any of its cells. A structure that moves
 /// by itself is in memory 0.
 ///
-/// All memories of a cycle are drawn from one position of the eye, because warping must know the exact positions. With
+/// All memories of a cycle are drawn from one position of the eye, because warping needs the exact positions. With
 /// warping, all memories of a cycle swap together. A memory that swapped before its neighbour would be warped for a
 /// position that is not displayed.
 pub(super) struct ByCells {
@@ -49,7 +49,8 @@ impl ByCells {
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// Returns the displacement of vertices that makes an update of a memory meet the next slower memory.
+    /// Returns the displacement of vertices with which the image of a memory meets the image of the next slower memory
+    /// at their border.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {

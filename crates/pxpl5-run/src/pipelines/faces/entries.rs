@@ -16,7 +16,8 @@ use std::sync::Arc;
 const KEYS: [&[Key]; 4] =
     [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
-/// Settings of an ideal source, which supports every policy. The settings for cells have an effect only with cells.
+/// Settings of an ideal source, which supports every policy. The settings for cells have an effect only under a policy
+/// with cells.
 const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];

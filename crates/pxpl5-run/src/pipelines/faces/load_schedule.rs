@@ -66,15 +66,15 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the register. It is at most one pixel's time before the first
-    /// pixel that uses the orientation is latched.
+    /// Returns the instant at which an orientation is in the register. This instant is at most one pixel's time before
+    /// the first pixel that uses the orientation is latched.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
     }
 
-    /// Returns the instant for which an orientation is predicted. It depends on the aim, and lies in the time span in
-    /// which the pixels with this orientation are lit.
+    /// Returns the instant for which an orientation is predicted. This instant depends on the aim, and lies in the time
+    /// span in which the pixels with this orientation are lit.
     pub(crate) fn aimed(&self, load: Load) -> Time {
         let Load { field, line, number } = load;
         let last_line = (line + self.lines).min(self.height()) - 1;
@@ -118,7 +118,7 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the register load that is complete at exactly this instant, or else the first one after it.
+    /// Returns the register load that is complete at exactly this instant, or else the first load after this instant.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

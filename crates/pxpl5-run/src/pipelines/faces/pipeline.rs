@@ -35,7 +35,7 @@ use std::sync::Arc;
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
     PixelPlanes,
-    /// An ideal renderer without delay. It draws from the eye position that is known at each retrace.
+    /// An ideal renderer without delay. This renderer draws from the eye position that is available at each retrace.
     ///
     /// Errors that remain with this renderer are not caused by drawing time.
     Ideal,
@@ -52,7 +52,7 @@ pub struct FacePipeline {
     pub latch: Latch,
     /// Method of shading.
     pub shading: Shading,
-    /// For policies with cells: true if structures are cut at the borders of cells.
+    /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
     /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
     pub segmented: bool,
@@ -238,7 +238,7 @@ const ORIENTATION_PORT: usize = 0;
 
 /// Connection from the host to the display that carries the head's orientations.
 ///
-/// The first orientation is the head's initial orientation. Later ones follow tracker reports or are predicted.
+/// The first orientation is the head's initial orientation. Later orientations follow tracker reports or are predicted.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -361,7 +361,7 @@ impl Pipeline for FacePipeline {
             return self.plug_ideal_source(machine, setup);
         }
         let config = self.config(machine, setup.pixels)?;
-        // All slaves share recent views, because each of them transforms for the same faces.
+        // All slaves share recent views, because each slave transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
         let list = Arc::new(list);
@@ -409,7 +409,8 @@ impl PictureRules for FacePipeline {
         true
     }
 
-    /// Counts the fields since the first swap of any memory. Each field is shown with its own latched orientation.
+    /// Counts the fields since the first swap of any memory, because each field is shown with its own latched
+    /// orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);

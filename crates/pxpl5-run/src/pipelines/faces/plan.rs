@@ -64,8 +64,8 @@ impl Updates {
 
     /// Returns the view of an eye at the same position but without rotation, along the world's axes.
     ///
-    /// Structures attached to the head are drawn in the currently known direction of the head. Until the next update,
-    /// they turn with the faces.
+    /// Structures attached to the head are drawn for the newest direction of the head. Until the next update, these
+    /// structures turn with the faces.
     fn ahead(&self, view: &FrameView) -> FrameView {
         let eye = view.eyes.first();
         let place = eye.map_or(DVec3::ZERO, |eye| place(&eye.world_to_eye));
@@ -94,7 +94,8 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan with a single memory. Each update redraws all structures. The next update begins when the previous one ends.
+/// A plan with a single memory. Each update redraws all structures. The next update begins when the previous update
+/// ends.
 pub(super) struct Full {
     updates: Updates,
     structures: Arc<[bool]>,
@@ -134,9 +135,9 @@ pub(super) trait DuePolicy {
 
 /// A plan for priority rendering: in each cycle, a policy selects the memories to redraw.
 ///
-/// A cycle begins when all memories of the previous cycle have been sent, but not in the same field as the previous
-/// cycle. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes one
-/// field and begins with the field.
+/// A cycle begins when all memories of the previous cycle have been sent, but never in the field in which the previous
+/// cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes
+/// one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
     scan: Scan,

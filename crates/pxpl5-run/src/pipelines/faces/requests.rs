@@ -20,7 +20,7 @@ pub struct RequestedUpdate {
     pub structures: Arc<[bool]>,
 }
 
-/// A record of the updates of a run, except discarded ones. The record grows during the run. Clones share the same
+/// A record of the updates of a run that were not discarded. The record grows during the run. Clones share the same
 /// record.
 #[derive(Clone, Debug, Default)]
 pub struct RequestedUpdates(Arc<Mutex<Held>>);
@@ -56,7 +56,7 @@ impl RequestedUpdates {
     }
 
     /// Discards the updates of a display memory before the update `number`, because the memory now shows this update or
-    /// a later one.
+    /// a later update.
     pub(crate) fn keep_from(&self, memory: usize, number: u64) {
         self.held().notes.retain(|(before, note)| note.memory != memory || *before >= number);
     }

@@ -79,7 +79,7 @@ fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation
     Segmentation::new(&places, &triangles, side_m)
 }
 
-/// A scene of segments, under construction.
+/// A scene of segments (parts of structures in one cell), under construction.
 struct Pieces {
     parts: SceneParts,
     cells: Vec<Vec<Cell>>,

@@ -70,7 +70,8 @@ impl<'a> Chunks<'a> {
 
     /// Returns the greatest number of bytes that the JSON takes after parsing.
     ///
-    /// A file of a few bytes per item must not take hundreds of bytes for each item, so the items are counted before.
+    /// An item with a few bytes in the file can take hundreds of bytes after parsing. The items are therefore counted
+    /// before parsing, so that a small file cannot exhaust the memory.
     pub(super) fn parsed_bytes(&self) -> usize {
         let [mut objects, mut texts, mut numbers] = [0_usize; 3];
         let mut bytes = self.json.iter();

@@ -65,7 +65,7 @@ fn bare(field: &str) -> &str {
 /// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because their time stamp equals that of the sample before.
+    /// Warning about samples that were left out because they have the same time stamp as the preceding sample.
     pub(super) repeated: Option<String>,
 }
 
@@ -147,7 +147,7 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
     if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
-/// A count of the samples whose time stamp equals that of the sample before.
+/// A count of the samples that have the same time stamp as the preceding sample.
 #[derive(Default)]
 struct Repeated {
     count: usize,
@@ -297,7 +297,7 @@ impl Layout {
         Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
-    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous one and stays below
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
     /// the limit.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();
