@@ -41,7 +41,7 @@
 //! |---|---|
 //! | announced | `g + word + h x hop` |
 //! | first word at the destination | `g + overhead x word + h x hop` |
-//! | last word has arrived; sender notified ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
+//! | last word arrived; sender notified ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
 //! A message needs one event, its grant. A second event is needed only if another message waits for the end of the
