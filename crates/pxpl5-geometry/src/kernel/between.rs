@@ -1,5 +1,5 @@
-//! Code of the graphics processor for triangles between two views. It records the corners of triangles in both views,
-//! and makes commands for any view in between.
+//! Code of the graphics processor for triangles between two views. The code records the corners of triangles in both
+//! views, and makes commands for any view between the two views.
 //!
 //! The sources are kernels/ends.s, blend.s and between.s.
 
@@ -18,8 +18,8 @@ impl Kernel {
     /// Returns the source that makes commands of triangles [between two views](Self::ends_source). The commands are for
     /// a strip of screen lines.
     ///
-    /// The code is like the compiled kernel, for every optimization level. It stores the bounding box of each command.
-    /// Execution begins at the label `start`; kernels/between.s lists the registers.
+    /// At every optimization level, the code is like the compiled kernel. The code stores the bounding box of each
+    /// command. Execution begins at the label `start`, and kernels/between.s lists the registers.
     #[must_use]
     pub fn between_source(&self) -> String {
         let record = include_str!("../../kernels/ends_record.s");
