@@ -29,7 +29,7 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
 }
 
 /// The sixteen data paths of pfam and pfsm, by the field DPC (data-path control). For pfmam and pfmsm,
-/// [`MULTIPLIER_ROUTES`] has `M` for every `A`.
+/// [`MULTIPLIER_ROUTES`] has `M` in place of every `A`.
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};
     [
@@ -72,7 +72,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns two booleans. They are true if the first source, or the second source, is a pair of registers.
+/// Returns two booleans. The first is true if the first source is a pair of registers, and the second is true if the
+/// second source is a pair.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);

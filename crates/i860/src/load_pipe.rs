@@ -13,7 +13,7 @@ pub(crate) struct LoadPipe {
 }
 
 impl LoadPipe {
-    /// Starts a pipelined load after the data of the oldest one have arrived.
+    /// Starts a pipelined load after the data of the oldest load have arrived.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
         // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
@@ -29,7 +29,7 @@ impl LoadPipe {
     }
 }
 
-/// Returns the clock at which data from the cache arrive: after all earlier bus cycles have ended.
+/// Returns the clock at which data from the cache arrive. The data arrive after the end of all earlier bus cycles.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

@@ -31,8 +31,8 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit of x in row y because of one edge. With `from_left`, the limit is x >= (b y + c) * scale, else x <= (b y + c)
-/// * scale. All numbers except `scale` are exact.
+/// Limit of x in row y because of one edge. With `from_left`, the limit is `x >= (b y + c) * scale`, else it is
+/// `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
