@@ -215,8 +215,8 @@ impl Cpu {
         }
     }
 
-    /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts their
-    /// clocks.
+    /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts the clocks
+    /// of all executed instructions.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());

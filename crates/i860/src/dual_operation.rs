@@ -52,7 +52,8 @@ pub(crate) const ROUTES: [Route; 16] = {
     ]
 };
 
-/// The sixteen data paths of pfmam and pfmsm. They equal [`ROUTES`], with `M` (the multiplier's result) instead of `A`.
+/// The sixteen data paths of pfmam and pfmsm. The table equals [`ROUTES`], with `M` (the multiplier's result) instead
+/// of `A`.
 pub(crate) const MULTIPLIER_ROUTES: [Route; 16] = {
     let mut routes = ROUTES;
     let mut n = 0;

@@ -179,7 +179,7 @@ impl Flags {
 
 /// One decoded instruction.
 ///
-/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded; `op` determines the register file. A store of an
+/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded. `op` determines the register file. A store of an
 /// integer register stores register `src1`, and `fst` and `pst` store register `dest`. `imm` holds the immediate, the
 /// displacement in bytes, or the branch offset in words. `size` is the operand size in bytes of fld, fst, pfld and pst,
 /// and 0 for other operations.

@@ -1,4 +1,5 @@
-//! The pipe of pipelined loads (`pfld`). Their data bypass the cache and reach a register three loads later.
+//! The pipe of pipelined loads (`pfld`). The data of such loads bypass the cache and reach a register three loads
+//! later.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};

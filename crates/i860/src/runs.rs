@@ -110,8 +110,8 @@ impl Clock {
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
         let is_unfetched = course.at.is_multiple_of(PLACES);
-        // If the cache holds the whole block, the line matters only to a run that begins with a fetch while another
-        // line is arriving.
+        // If the cache holds the whole block, cache lines matter only if the run begins with a fetch while another line
+        // is arriving.
         let (line, end) = match whole && !(entry.is_filling() && is_unfetched) {
             true => (0, usize::MAX),
             false => block.line(number),

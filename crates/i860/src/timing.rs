@@ -44,7 +44,7 @@ pxpl5_sim::parameters::parameter_table! {
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
         /// Cost of freeze row 12: TLB miss. This row applies only while address translation is on.
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 13: a pfld is issued while three earlier ones are outstanding.
+        /// Cost of freeze row 13: a pfld is issued while three earlier pfld are outstanding.
         load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 14: a pfld hits the data cache.
         pipelined_load_hit: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";

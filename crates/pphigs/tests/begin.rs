@@ -1,5 +1,5 @@
-//! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal those of
-//! the native firmware.
+//! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal the blocks
+//! and matrices of the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{

@@ -22,7 +22,7 @@ fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
     Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
 }
 
-/// Returns small triangles and spheres in front of the eye. Most of them are near the middle, so that some bins fill
+/// Returns small triangles and spheres in front of the eye. Most primitives are near the middle, so that some bins fill
 /// several messages.
 fn share(triangles: u32, spheres: usize) -> Share {
     let mut numbers = SplitMix64::new(3);

@@ -198,7 +198,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     assert!(flattened > 0, "steep planes are among them");
 }
 
-/// Returns two eyes some distance apart that look in slightly different directions.
+/// Returns two eyes with some distance between them and slightly different view directions.
 fn two_eyes(left: &ViewTransform) -> [ViewTransform; 2] {
     let aside = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04);
     [*left, ViewTransform { model_view: aside * left.model_view, projection: left.projection }]

@@ -33,7 +33,8 @@ impl Numbers {
     }
 }
 
-/// Returns triangles and spheres in five structures, all around the origin. Most of them look small from the origin.
+/// Returns triangles and spheres in five structures, all around the origin. Most primitives appear small from the
+/// origin.
 ///
 /// One structure is fixed to the head, one is not drawn, and one has back faces that are dropped.
 fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayList> {

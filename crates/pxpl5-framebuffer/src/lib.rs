@@ -50,8 +50,7 @@
 //!
 //! - the colour encoder and its subcarrier, gamma and the phosphor
 //! - the 9 pre-equalising and synchronising lines, except for their time
-//! - two simultaneous transfers into one board (the port permits only one at a time; if two overlap nevertheless, the
-//!   later one hides the earlier one)
+//! - two simultaneous transfers into one board (the port permits only one transfer at a time)
 //! - conflicts between the scan and the port over the video RAM
 //!
 //! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by parameters. A panel

@@ -400,7 +400,7 @@ fn a_buffer_that_is_not_displayed_shows_nothing() {
             &colour(RED),
         );
     }
-    // Picture 0 is overwritten before it is shown; picture 1 is shown in fields 4 and 5.
+    // Picture 0 is overwritten before it is shown. Picture 1 is shown in fields 4 and 5.
     board.swap(Time(retrace(4).0 - 1), 1);
     board.swap(Time(retrace(6).0 - 1), 0);
     board.run();

@@ -20,7 +20,7 @@ const MAX_DEPTH_SHIFT: i32 = 20;
 /// `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// Origin in pixels of the frame; (0, 0) is the centre of the top left pixel.
+    /// Origin in pixels of the frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Triangle {
     /// Positions of the corners in world coordinates. The corners can run clockwise or counterclockwise.
     pub positions: [Vec3; 3],
-    /// Normals at the corners. They can have any length. A zero normal counts as a normal that faces the eye.
+    /// Normals at the corners. The normals can have any length. A zero normal counts as a normal that faces the eye.
     pub normals: [Vec3; 3],
     /// Red, green and blue at the corners, 0 to 255 each.
     pub colours: [[u8; 3]; 3],

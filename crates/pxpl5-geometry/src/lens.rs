@@ -6,8 +6,8 @@ use crate::view::Columns;
 
 /// Mapping from eye coordinates to pixels and depths, as needed for spheres.
 ///
-/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. Then u is 1/t under a perspective
-/// projection, and -t under a parallel projection.
+/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. With a perspective projection, u is
+/// 1/t. With a parallel projection, u is -t.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     /// True if the projection is parallel, so that distance does not change sizes.

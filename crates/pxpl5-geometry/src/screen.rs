@@ -155,8 +155,8 @@ impl Outline {
         [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
-    /// Returns four planes over the picture's pixels. They pass through the depths and through three surface values of
-    /// the corners.
+    /// Returns four planes over the picture's pixels. The planes pass through the depths and through three surface
+    /// values of the corners.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
         let planes = Planes::for_outline(self, self.middle(viewport));

@@ -70,7 +70,7 @@ impl Touched {
 }
 
 impl Transform {
-    /// Bins triangles. The results equal those of [`Self::bin`].
+    /// Bins triangles. The results equal the results of [`Self::bin`].
     ///
     /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
     /// vertices must come from this view.

@@ -1,7 +1,7 @@
 //! Vertices that many triangles share, each transformed only once.
 //!
 //! From these vertices, triangles that need no clipping are [binned](Transform::touched) and set up in
-//! [groups](crate::TriangleLanes). The results equal those of [`Transform::bin`], [`Transform::gouraud`] and
+//! [groups](crate::TriangleLanes). The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
 //! [`Transform::phong`]. These three functions handle the triangles that need clipping.
 
 use crate::clip::Guard;
@@ -127,8 +127,8 @@ fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
     on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
-/// Transforms vertices and appends the results to `out`. The results equal those of [`Transform::screen_vertex`]. The
-/// loops are plain Rust and are compiled once for each vector unit (see [`crate::lanes`]).
+/// Transforms vertices and appends the results to `out`. The results equal the results of [`Transform::screen_vertex`].
+/// The loops are plain Rust and are compiled once for each vector unit (see [`crate::lanes`]).
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn append_lanes(
     positions: &[[Vec3; LANES]],

@@ -113,8 +113,8 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
     assert_eq!(count(&counts, 100, 100), 1);
     // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ... A row at height
     // k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its right end
-    // is on a right edge and does not count. The row of the bottom corner is empty, since no left or top edge contains
-    // the corner as an inner point. The row of the top corner is empty, since the corner is on a right edge.
+    // is on a right edge and does not count. The row of the bottom corner is empty, because no left or top edge
+    // contains the corner as an inner point. The row of the top corner is empty, because the corner is on a right edge.
     let expected: u32 = (-9_i32..=9).map(|k| 2 * (10 - k.unsigned_abs())).sum();
     assert_eq!(counts.iter().map(|&n| u32::from(n)).sum::<u32>(), expected);
 }

@@ -170,7 +170,7 @@ impl GpBoard {
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
-        // Record the event; the programs see it at their next poll.
+        // Record the event. The programs read it at their next poll.
         let cause = match event {
             GpEvent::Delivered(message) => shared.latch(message),
             GpEvent::Accepted(ticket) => shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK),
@@ -199,7 +199,7 @@ impl GpBoard {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.settle(shared.now);
         }
-        // Work may have ended at this instant; then run the programs as far as they go.
+        // If work ends at this instant, run the programs until they wait.
         self.poll_until_quiet();
         let mut shared = self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {

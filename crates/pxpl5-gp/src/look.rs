@@ -29,7 +29,7 @@ pub struct GpSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSnapshot {
     pub priority: Priority,
-    /// Name of the condition that the program waits for; empty before its first run.
+    /// Name of the condition that the program waits for. The name is empty before the first run.
     pub waits_for: &'static str,
     /// Remaining CPU time of the program's work, or `None` without work. The value of the foreground program stays
     /// constant while the interrupt program works.

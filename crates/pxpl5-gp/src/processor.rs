@@ -104,7 +104,7 @@ pub enum ProcessorFault {
     },
 }
 
-/// Return address of every call. Memory has no code there; a run stops when it reaches this address.
+/// Return address of every call. Memory has no code at this address, and a run stops when it reaches the address.
 const RETURN: u32 = 0x0800;
 
 /// Returns the range of memory addresses that a program occupies.
@@ -291,8 +291,8 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault::NoRoom`] if the output does not fit beside the other context. In this case, nothing
-    /// changes.
+    /// Returns [`ProcessorFault::NoRoom`] if the free memory beside the other context is too small. In this case,
+    /// nothing changes.
     pub fn place_output(&mut self, context: u8, end_of_data: u32, bytes: u32) -> Result<u32, ProcessorFault> {
         // Find the free range beside the other context.
         let [lower, upper] = &self.outputs;
@@ -356,7 +356,7 @@ impl Processor {
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();
-        // Code that has changed in memory must be decoded anew.
+        // Code that has changed in memory must be decoded again.
         let known = self.is_as_loaded.then_some(program);
         self.cpu.open(shelf, known);
         let end = if self.breakpoints.is_empty() {

@@ -187,7 +187,7 @@ fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());
     }
-    // Only messages of words have a handler; other kinds are refused.
+    // Only messages of words have a handler. Other kinds are refused.
     let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();
     let handlers = [handler("queue"), handler("nohandler"), handler("nohandler")];
     const { assert!(KINDS == 3, "a handler for each kind") };

@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
-        // 5 MB/s give 800 ns per word; 3 bytes per second give 4/3 s.
+        // 5 MB/s give 800 ns per word, and 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };
         assert_eq!(slow.link_span(1), Span(1_333_333_333_333));

@@ -165,7 +165,7 @@ fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_
     assert_eq!(waits_of_a_chain([1, 2, 3], [2, 0, 1]), all_at_the_end);
 }
 
-/// The interrupt program is polled first. It sees progress of the other program at the same instant.
+/// The interrupt program is polled first. It gets the progress of the other program at the same instant.
 #[test]
 fn what_one_program_does_for_the_other_is_found_at_once() {
     let notes = Notes::default();

@@ -91,7 +91,7 @@ pub struct Renderer {
     /// Copies whose regions are in the backing store. Each copy waits for an earlier transfer, or for the command that
     /// releases it.
     stored: VecDeque<PendingCopy>,
-    /// Command lists received so far. They are kept only while the FIFO is watched.
+    /// Command lists received so far. The lists are kept only while the FIFO is watched.
     sent: Option<SentLists>,
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,

@@ -87,8 +87,8 @@ impl StartTimes {
     /// `soonest`.
     ///
     /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
-    /// decrease from call to call. Among commands that start at equal intervals, only the last command that makes room
-    /// matters, because an interval is at least as long as the transfer of a command's words.
+    /// decrease from call to call. For commands that start at equal intervals, only the last command that makes room
+    /// matters. The reason is that an interval is at least as long as the transfer of a command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -347,7 +347,7 @@ impl InputFifo {
         progress
     }
 
-    /// Computes all commands of a batch at once. The results equal those of [`InputFifo::arrival`] and
+    /// Computes all commands of a batch at once. The results equal the results of [`InputFifo::arrival`] and
     /// [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
@@ -486,7 +486,7 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
-                    // A word enters when the word that is one FIFO depth ahead of it has left.
+                    // Word n enters the FIFO when word n - depth has left the FIFO.
                     let room =
                         if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;

@@ -3,8 +3,8 @@
 //! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
 //! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
-//! background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs the
-//! published program of a triangle and the shading at the end of a frame.
+//! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
+//! that can execute the published program of a triangle and the shading at the end of a frame.
 //!
 //! # Words
 //!

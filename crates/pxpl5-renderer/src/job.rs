@@ -1,4 +1,4 @@
-//! Pixels of one region. They are computed only when they are read.
+//! Pixels of one region. The pixels are computed only when they are read.
 
 use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;

@@ -98,8 +98,8 @@ impl SentLists {
             .unwrap_or(0)
     }
 
-    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if none of them changed
-    /// a pixel.
+    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if these commands
+    /// changed no pixel.
     pub(crate) fn executed(&self, started: u64, layout: &Layout) -> Option<Lanes> {
         let mut lists = self.0.iter().filter(|list| list.first_word < started).peekable();
         lists.peek()?;

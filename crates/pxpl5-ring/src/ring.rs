@@ -168,7 +168,7 @@ impl Ring {
         self.sources.len() as u16
     }
 
-    /// Returns the statistics of the ring. They cover all messages that had ended at the last grant or
+    /// Returns the statistics of the ring. The statistics cover all messages that had ended at the last grant or
     /// [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {

@@ -70,7 +70,7 @@ impl Machine {
                 all.push(next);
             }
         }
-        // A message to an elastic receiver always ends; its renderer may continue.
+        // A message to an elastic receiver always ends. Then its renderer can continue.
         if let Some(renderer) = state.to_frame_buffer {
             let mut next = state.clone();
             next.to_frame_buffer = None;

@@ -148,7 +148,7 @@ pub trait Display: Any + Debug + Send + Sync {
     fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;
-        // Begin with the last complete picture and add the pixels lit since.
+        // Begin with the last complete picture, and add the pixels lit in the current period.
         let before = self.last_seen().and_then(|last| self.seen(surface, last));
         let mut screen = before.unwrap_or_else(|| RgbImage::new(size.width, size.height));
         let shown = self.shown(surface)?;

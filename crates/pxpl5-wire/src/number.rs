@@ -55,7 +55,7 @@ macro_rules! count_from_zero {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all greater ones.
+            /// Iterates over this number and all greater numbers.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }

@@ -34,7 +34,7 @@ struct ProcessorState {
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have acknowledged the copy of their last region since the last copy order.
     copied: usize,
-    /// The prepared copies of the bottom regions. They wait until the top regions are copied.
+    /// The prepared copies of the bottom regions. These copies wait until the top regions are copied.
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],

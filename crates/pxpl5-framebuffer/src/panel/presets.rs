@@ -55,8 +55,8 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// An assumed LCD panel for one eye, with numbers between those of two headsets of 2019. A short flash lights the
-    /// panel after all its pixels were written.
+    /// An assumed LCD panel for one eye, with numbers between the numbers of two headsets of 2019. A short flash lights
+    /// the panel after all its pixels were written.
     ///
     /// No single headset has these numbers. Oculus Rift S has this size at 80 Hz. Valve Index has this rate and flash,
     /// but its 1440 x 1600 pixels have 156 regions, and firmware supports at most 128 regions.

@@ -173,7 +173,8 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the fields of the scratch memory that the programs of commands use. Their addresses are absolute.
+/// Returns the fields of the scratch memory that the programs of commands use. The addresses of these fields are
+/// absolute.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);

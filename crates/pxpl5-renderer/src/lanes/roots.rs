@@ -1,4 +1,4 @@
-//! Integer square roots and quotients. They are computed in floating point, then corrected to the exact integer.
+//! Integer square roots and quotients. The results are computed in floating point, then corrected to the exact integer.
 //!
 //! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every host. All
 //! operands fit the 24 bits of a single-precision number, so they are exact.

@@ -139,7 +139,7 @@ impl DoubleBuffer {
         Some(buffer)
     }
 
-    /// Returns the picture in the shown buffer. Incomplete regions are included; the picture is black where no region
+    /// Returns the picture in the shown buffer. Incomplete regions are included. The picture is black where no region
     /// has arrived.
     #[must_use]
     pub fn picture(&self) -> RgbImage {

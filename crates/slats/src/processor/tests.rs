@@ -110,10 +110,10 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// At each retrace, the processor requests the last complete field of those lines that the next period scans. A new
-/// field is written into the other buffer. Its display is requested if its top regions have been copied before its
-/// retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame buffers. After
-/// a late field, the next field has the lines of the other parity.
+/// At each retrace, the processor requests a field for the next period: the last complete field with the lines of this
+/// period. A new field is written into the other buffer. Its display is requested if its top regions have been copied
+/// before its retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame
+/// buffers. After a late field, the next field has the lines of the other parity.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
