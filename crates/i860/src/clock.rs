@@ -128,7 +128,8 @@ impl Clock {
         }
     }
 
-    /// Turns address translation on with the page directory at an address, or off with `None`.
+    /// Turns address translation on, with the page directory at the given address. With `None`, turns address
+    /// translation off.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }

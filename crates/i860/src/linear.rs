@@ -75,7 +75,7 @@ pub struct LinearError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
-    /// multiplier accepts one every second clock.
+    /// multiplier accepts one such multiply every second clock.
     pub floating: usize,
     /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
     /// `core`.

@@ -7,7 +7,7 @@ use pxpl5_wire::RegionId;
 /// The result of binning one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// The triangle needs clipping. [`crate::Transform::bin`] clips it and finds its regions.
+    /// The triangle needs clipping. [`crate::Transform::bin`] clips the triangle and finds its regions.
     NeedsClipping,
     /// The triangle has no area after rounding to subpixels.
     Degenerate,

@@ -15,7 +15,7 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen in one view. All triangles at this vertex share it.
+/// A vertex on the screen in one view. All triangles at this vertex share this vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 

@@ -17,8 +17,8 @@ pub const MAX_PICTURE: u32 = 2048;
 /// as in `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewTransform {
-    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, it must consist of a
-    /// rotation, a translation and a uniform scale.
+    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, the matrix must consist
+    /// of a rotation, a translation and a uniform scale.
     pub model_view: Mat4,
     /// Matrix from eye coordinates to clip coordinates.
     pub projection: Mat4,

@@ -24,7 +24,7 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Starts CPU work of length `span` for the program of a priority.
+    /// Starts CPU work of length `span` for the program at this priority.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
@@ -61,8 +61,7 @@ impl Cpu {
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// Returns the CPU time that the work of a priority still needs at time `now`. Returns `None` without unfinished
-    /// work.
+    /// Returns the remaining CPU time of the unfinished work at this priority. Returns `None` if there is no such work.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
         match self.running {

@@ -165,7 +165,7 @@ pub struct Processor {
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses of the breakpoints. `hits` holds the hits since the last [`Processor::take_hits`].
+    /// Addresses of the breakpoints. The next field, `hits`, holds the hits since the last [`Processor::take_hits`].
     breakpoints: BTreeSet<u32>,
     hits: Vec<BreakpointHit>,
 }

@@ -115,7 +115,7 @@ pub struct DrawnRegion {
     pub executed: Span,
 }
 
-/// Command lists sent to a region context since it was last cleared.
+/// Command lists sent to a region context since the last clear of this context.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,

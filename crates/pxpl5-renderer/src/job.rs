@@ -80,7 +80,8 @@ impl ArrayPool {
     }
 }
 
-/// A pending computation of a region's pixels, with all command lists sent to a region context since it was cleared.
+/// A pending computation of a region's pixels, with all command lists sent to a region context since the last clear of
+/// this context.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,

@@ -25,7 +25,7 @@
 //!    receiver gets the message when the last word has arrived ([`RingOutput::Delivered`]).
 //! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement of the message
 //!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters the FIFO
-//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible one, the difference is a *stall*.
+//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible time, the difference is a *stall*.
 //!    During a stall, channel and ports stay occupied.
 //! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO
 //!    may have to send messages before it can accept more words. The remaining channels are for such messages, so full

@@ -13,8 +13,8 @@ pub enum RingEvent {
     /// FIFO. The event belongs to phase `Arrive` of the event queue.
     ///
     /// A time earlier than `first_word_at + words x word` is impossible. Such an answer is counted as a fault, and the
-    /// earliest possible time is used instead. If the answer comes after the sender could have been free, the sender
-    /// becomes free at once.
+    /// earliest possible time is used instead. If the answer arrives after the time at which the message would free its
+    /// sender, the sender becomes free immediately.
     Accept {
         /// Port of the receiver.
         destination: NodeId,

@@ -262,8 +262,8 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Schedules an arbitration at time `at`, unless an earlier one is scheduled already. Each arbitration schedules
-    /// the next one.
+    /// Schedules an arbitration at time `at`, unless an earlier arbitration is scheduled already. Each arbitration
+    /// schedules the next arbitration.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);

@@ -1,8 +1,8 @@
 //! Fixed-point formats of expression coefficients and of fields in pixel memory.
 //!
-//! All formats are **assumed**. The papers give the bits of pixel memory (208), the bits of colour (24) and the time of
-//! a triangle. These figures fit a 24-bit Z and 8-bit colour components. The numbers of fraction bits are choices of
-//! this project.
+//! All formats are **assumed**. The papers give the number of bits of pixel memory (208), the number of bits of a
+//! colour (24) and the time of a triangle. These figures fit a 24-bit Z and 8-bit colour components. The numbers of
+//! fraction bits are choices of this project.
 
 /// Number of fraction bits of a vertex position on the screen. Positions are multiples of 1/16 pixel.
 pub const SUBPIXEL_BITS: u32 = 4;

@@ -223,7 +223,7 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Outputs of the trees of one tile, with one word in each clock for each expression of a run.
+/// Outputs of the adder trees for one tile. For each clock, there is one word per expression of the run.
 struct TileStreams {
     streams: LinearStreams,
     /// Number of expressions whose trees have run.

@@ -323,7 +323,7 @@ mod tests {
         }
     }
 
-    /// Uses the fact that the edges of a triangle add up to a constant.
+    /// Recognizes triangles by the sum of their three edge expressions, which is a constant.
     #[test]
     fn most_edges_are_those_of_a_triangle_of_any_size() {
         let mut random = Random::new(5);

@@ -23,7 +23,7 @@ struct FieldColumn {
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit of pixel memory, the index of the column that holds it.
+    /// For each bit of pixel memory, the index of the column that holds the bit.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
