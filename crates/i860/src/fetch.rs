@@ -110,7 +110,7 @@ impl Fetch {
     }
 
     fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
-        // Row 1b applies if a fill of the data cache is running at the begin of the miss.
+        // Row 1b applies if a fill of the data cache is running at the start of the miss.
         common.profile.instruction_misses += 1;
         let is_behind_data = common.now < common.data_fill_end;
         common.await_address_pipe();

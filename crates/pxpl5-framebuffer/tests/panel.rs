@@ -182,7 +182,7 @@ fn built(config: PanelConfig) -> Box<dyn Display> {
     config.build(&[NodeId(1)]).expect("it can be built")
 }
 
-/// Returns the times at which some pixels light in the second period, in microseconds from the begin of the period.
+/// Returns the times at which some pixels light in the second period, in microseconds from the start of the period.
 fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
     let display = built(config);
     let begin = display.tick(PeriodNumber(1));

@@ -570,7 +570,7 @@ impl Kernel {
 }
 
 impl KernelPicture {
-    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports it.
+    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports this viewport.
     pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
         let grid = viewport.grid();
         match viewport.lines() {

@@ -34,8 +34,8 @@
 //! |---|---|---|
 //! | vertex | 2^16 subpixels from pixel (0, 0) | [`GUARD_PIXELS`] |
 //! | edge at any pixel | 2^30 | tests/setup.rs |
-//! | depth plane | right to `(abs dx + abs dy) / 2 + 1` of 2^-8 unit; never wraps at a covered pixel | tests/setup.rs |
-//! | colour plane | the same of 2^-12 unit; never wraps at a covered pixel | tests/setup.rs |
+//! | depth plane | error up to `(abs dx + abs dy) / 2 + 1` units of 2^-8; no wrap at covered pixels | tests/setup.rs |
+//! | colour plane | the same error in units of 2^-12; no wrap at covered pixels | tests/setup.rs |
 //! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!

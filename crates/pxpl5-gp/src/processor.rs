@@ -180,7 +180,7 @@ pub struct BreakpointHit {
     pub gp: NodeId,
     /// Address of the instruction at the breakpoint.
     pub address: u32,
-    /// i860 time from the begin of the call to the breakpoint.
+    /// i860 time from the start of the call to the breakpoint.
     pub into_call: Span,
     /// Registers, control registers and pipes of the i860.
     pub state: Box<State>,

@@ -73,7 +73,7 @@ pub enum CodeUse {
 // (docs/gp-timing.md). `message_ns` is also the time of kernels/token.s for a token without entries. `token_entry_ns`
 // is the time for each entry of a token.
 //
-// `pass_ns` is the time at the begin of a pass that does not belong to structures: to reset bins and to load code into
+// `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
 // the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
 impl GpTiming {
     /// Returns this table with the primitive times of i860 code. `version` is the version of the code, and `of` is the
@@ -111,8 +111,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of Slats: compiled code, field triangles with precomputed colours. A
-    /// clump has thirty triangles, and one pass makes the commands of both eyes.
+    /// Returns this table with the times of primitives in Slats. The code is compiled, the picture is a field, and
+    /// vertex colours are precomputed. A clump has thirty triangles, and one pass makes the commands of both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -251,8 +251,9 @@ mod tests {
         }
     }
 
-    /// The times 30.0 and 55.8 us are fitted to the published limits of 110 and 100 triangles. I3D95 expects a third of
-    /// the time of 1994 for code that fits the instruction cache. Slats has no bins.
+    /// The times of 30.0 and 55.8 us are fitted to the published limits: 110 triangles in 1994, 100 triangles in 1995.
+    /// The third time is a third of the time of 1994. I3D95 expects this time for code that fits the instruction cache.
+    /// Slats has no bins, so a bin entry takes no time.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];

@@ -148,9 +148,9 @@ const SELECTION: Span = Span::from_ns(1_000);
 /// Times of the last blocking command and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// Time from which the controller was free for the commands before this one. The next field, `finished_at`, is the
-    /// end time of the last of these commands. The selection of the region to copy does not count if the controller
-    /// waited for it.
+    /// Time at which the previous blocking command ended. From this time on, the controller could execute the commands
+    /// before this command. The next field, `finished_at`, is the end time of the last of these commands. The selection
+    /// of the region to copy does not count if the controller waited for it.
     pub(crate) begun_at: Time,
     pub(crate) finished_at: Time,
     /// Start time of the blocking command.
@@ -595,8 +595,9 @@ mod tests {
     fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
         // 30 commands have 29 words and take 6.675 us each. The first command starts when its 29 words have entered
         // (1.45 us). Word k >= 448 waits for the start of the command with word k - 448. The last word (869) therefore
-        // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. Of the words that wait
-        // for this start, the last word has index 15 (421 - 406).
+        // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. This start makes room
+        // for 29 words. The last word is the 16th of these words (421 - 406 + 1), so it enters 16 word times after this
+        // start.
         let mut fifo = InputFifo::new(448, WORD);
         let clump = CommandBatch { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
         let accepted = message(&mut fifo, Time::ZERO, [clump]).accepted;

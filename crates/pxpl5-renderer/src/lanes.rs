@@ -49,7 +49,8 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array of zeros. Its fast path executes the commands of `layout`.
+    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout` and executes them
+    /// fast.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())

@@ -60,7 +60,7 @@ fn a_region_of_fifteen_messages_takes_the_published_780_us() {
 }
 
 /// TR94: five renderers copy 20 field regions to two frame buffers. Each renderer alternates between left and right. At
-/// the begin and at the end, one frame buffer idles for one region time.
+/// the start and at the end, one frame buffer idles for one region time.
 #[test]
 fn twenty_regions_to_two_frame_buffers_take_eleven_region_times() {
     let mut messages = Vec::new();

@@ -25,7 +25,7 @@ const MOST_DEPTH: u32 = 32;
 struct Budget {
     steps: usize,
     text: usize,
-    /// Number of the line that is being expanded, and the remaining budget at the begin of this expansion.
+    /// Number of the line that is being expanded, and the remaining budget at the start of this expansion.
     current: (usize, usize),
     /// Line number of the earlier line with the greatest use of the budget, and the amount that it used.
     largest_user: (usize, usize),

@@ -51,7 +51,7 @@ pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, LinearErr
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// Parses the parameters of a `.linear` line, the begin of linear code.
+/// Parses the parameters of a `.linear` line, the start of linear code.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {

@@ -46,8 +46,8 @@ impl Numbers {
         Vec3::new(across, (1.0 - y / 240.0) * TANGENT, -1.0) * distance
     }
 
-    /// Returns the corners of a random triangle. It can be small, a sliver, large, or beside the eye. Small triangles
-    /// are anywhere in the picture, or where four regions meet.
+    /// Returns the corners of a random triangle. The triangle can be small, a sliver, large, or beside the eye. Small
+    /// triangles are anywhere in the picture, or where four regions meet.
     ///
     /// No sliver extends so far in depth that its depth plane would be flattened, because kernels flatten only the
     /// planes of clipped pieces.

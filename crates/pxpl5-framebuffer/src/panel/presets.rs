@@ -73,7 +73,7 @@ pxpl5_sim::parameters::parameter_table! {
         scan: 1, "1", Assumed, 1..=1 in 0..=1, "an assumed panel: global backlight illumination in Valve Index (2019)";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "without effect while the scan is global";
-        /// Time from the begin of a period to the flash that lights the panel, in thousandths of the period.
+        /// Time from the start of a period to the flash that lights the panel, in thousandths of the period.
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the flash begins when the panel is written and liquid crystals have settled";
         /// Time for which the backlight is on in each scan.
         persistence_us: 330, "us", Assumed, 330..=530 in 0..=1_000_000, "an assumed panel: 0.330 to 0.530 ms in Valve Index (2019), depending on the rate";

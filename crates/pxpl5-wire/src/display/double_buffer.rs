@@ -1,4 +1,4 @@
-//! A double buffer of whole regions, for displays that swap buffers at the begin of a period.
+//! A double buffer of whole regions, for displays that swap buffers at the start of a period.
 
 use crate::{Body, MAX_MESSAGE_WORDS, RegionId, RegionPixels, Word, read_swap_request};
 use image::{Rgb, RgbImage};

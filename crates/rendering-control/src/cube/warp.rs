@@ -22,8 +22,8 @@ pub struct FaceWarp {
 
 /// Number of words of an encoded warp.
 ///
-/// The words are home cell, rings (growth in the upper half), number of memories, falloff, two lengths and two
-/// positions.
+/// The words are: home cell (four words), one word with `inner_rings` in the lower half and `ring_growth` in the upper
+/// half, number of memories, and falloff. Two lengths and two positions follow, with two words for each real number.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
