@@ -66,9 +66,9 @@ fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
 #[test]
 fn a_store_waits_for_the_last_word_of_a_fill() {
     let source = "st.l r5, 0(r4)\nst.l r5, 8(r4)\nst.l r5, 16(r4)\nst.l r5, 24(r4)\nnop\nnop\nnop\nnop";
-    // The first store is requested at clock 12 and begins after the line, at 17. It opens a row and ends at 26. The
-    // fourth store is issued at 15. It waits until the first store leaves the pipe, plus one clock, until 27. Four nops
-    // follow.
+    // The first store is requested at clock 12 and begins after the line, at 17. The first store opens a row and ends
+    // at 26. The fourth store is issued at 15. It waits until one clock after the first store has left the pipe, at 27.
+    // Four nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::StorePipeFull], source), 31);
 }
 
@@ -103,7 +103,7 @@ fn row_16_holds_an_instruction_fill_behind_three_requests() {
     let source = format!("mov 0x1800, r7\nnop\nnop\nnop\nnop\n{loads}nop");
     // mov and the nops end at clock 16. The loads of the open row are requested at 17, 18 and 19, and their data arrive
     // at 25, 27 and 29. The next line is needed at 19. Without the freeze row, its first word follows these data on the
-    // bus, at 31. With the freeze row, it is requested at 25 and arrives at 33.
+    // bus, at 31. With the freeze row, the line is requested at 25 and arrives at 33.
     assert_eq!(clocks(&[Freeze::InstructionMiss], &source), 32);
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::AddressPipeFull], &source), 34);
 }

@@ -309,7 +309,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
     assert!(error.starts_with("panel.refresh_hz") && error.contains('0') && error.contains("1000"), "{error}");
 }
 
-/// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its begin.
+/// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
 fn presets_are_lit_as_their_sources_say() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();

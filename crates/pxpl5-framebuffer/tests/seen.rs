@@ -103,7 +103,7 @@ fn seen(copies: &[Copied], shuffle: u64) -> ScannedField {
     board.device.seen(PeriodNumber(FIELD)).expect("kept")
 }
 
-/// Returns for each pixel the newest word that had arrived when it was scanned.
+/// Returns for each pixel the newest word that had arrived when the pixel was scanned.
 fn model_picture(copies: &[Copied]) -> Vec<u32> {
     let mut words = vec![0; 640 * 240];
     for copy in copies {

@@ -111,10 +111,11 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
     let rim = [[90.5, 100.5], [100.5, 90.5], [110.5, 100.5], [100.5, 110.5]].map(|[x, y]| at_pixel(x, y, 1.0));
     let (counts, _) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
     assert_eq!(count(&counts, 100, 100), 1);
-    // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ... A row at height
-    // k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its right end
-    // is on a right edge and does not count. The row of the bottom corner is empty, because no left or top edge
-    // contains the corner as an inner point. The row of the top corner is empty, because the corner is on a right edge.
+    // The result counts the pixel centres in the diamond |x| + |y| <= 10, without the lower and right rim. A row at
+    // height k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its
+    // right end is on a right edge and does not count. The row of the bottom corner is empty, because no left or top
+    // edge contains the corner as an inner point. The row of the top corner is empty, because the corner is on a right
+    // edge.
     let expected: u32 = (-9_i32..=9).map(|k| 2 * (10 - k.unsigned_abs())).sum();
     assert_eq!(counts.iter().map(|&n| u32::from(n)).sum::<u32>(), expected);
 }

@@ -484,7 +484,7 @@ impl Machine {
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board), time: now, fault });
         }
-        // Record the time stamps that its programs have set.
+        // Record the time stamps that the board's programs have set.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
             hash.record(mark.time, &mark_facts(&mark));
@@ -504,7 +504,7 @@ impl Machine {
         }
         schedule_own(queue, context, |event| Event::Renderer(board, event));
         let destination = record.ports.renderers[board];
-        // Schedule its answers to the ring: acceptance of a message, or a region to send.
+        // Schedule the board's answers to the ring: acceptance of a message, or a region to send.
         for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
             let event = match output {
                 RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
