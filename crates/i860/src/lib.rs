@@ -6,7 +6,7 @@
 //!            | integer | memory | floating | graphics         |<---->| impl Bus  |
 //!            | State: r, f, psr .. , pipes, KR KI T MERGE     |      +-----------+
 //!            | Clock: freezes, caches, TLB, store pipe, DRAM, |
-//!            |        memoized blocks                      |
+//!            |        memoized blocks                         |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
 //!  linear code -> linear::schedule -> text in dual-instruction mode

@@ -345,8 +345,8 @@ mod tests {
         }
     }
 
-    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results and
-    /// returns the number of covered pixels.
+    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results
+    /// and returns the number of covered pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

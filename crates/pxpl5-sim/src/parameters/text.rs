@@ -35,8 +35,8 @@ impl std::error::Error for TextError {}
 ///
 /// # Errors
 ///
-/// Returns a [`TextError`] if a byte is not UTF-8. The error gives the line of the byte and the position of the byte within
-/// the line, both counted from 1.
+/// Returns a [`TextError`] if a byte is not UTF-8. The error gives the line of the byte and the position of the byte
+/// within the line, both counted from 1.
 pub fn text_of(bytes: &[u8]) -> Result<&str, TextError> {
     std::str::from_utf8(bytes).map_err(|error| {
         // The valid text before the error suffices to compute the line and the position.
