@@ -1,7 +1,7 @@
 //! All numbers of the renderer board: times, rates and sizes.
 //!
-//! The clocks of a command are those of its program in the layout of Rendering Control ([`CommandKind::clocks`]). A
-//! test checks that they are equal. The table lists them separately, so that experiments can change them.
+//! The clocks of a command are the clocks of its program in the layout of Rendering Control ([`CommandKind::clocks`]).
+//! A test checks this equality. The table has the clocks as separate numbers, so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
@@ -52,8 +52,8 @@ impl RendererTiming {
         }
     }
 
-    /// Returns the execution time of one command. Returns `None` for the copy of a region. Its end depends on the frame
-    /// buffer, which must receive the region.
+    /// Returns the execution time of one command. Returns `None` for the copy of a region, because the end of a copy
+    /// depends on the frame buffer that receives the region.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {

@@ -8,7 +8,7 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct RingTiming {
         /// Time in which a channel moves one word.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
-        /// Overhead of each message, in word times.
+        /// Overhead of each message, as a number of word times.
         overhead_words: 16, "words", Derived, 16..=16 in 0..=1_000_000, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
         /// Latency from one board to the next board on the ring.
         hop_ns: 50, "ns", Assumed, 0..=200 in 0..=1_000_000, "one word time: every board latches a word once";

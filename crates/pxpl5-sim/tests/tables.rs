@@ -1,13 +1,13 @@
-//! Tests of tables through their interface.
+//! Tests of parameter tables through their public interface.
 
 use pxpl5_sim::parameters::{ParameterError, ParameterTable, Standing, Value, parameter_table};
 
 parameter_table! {
-    /// Numbers of both kinds, with limits and without.
+    /// A table with whole and real numbers, with and without limits.
     struct Table {
-        /// A published time, with which an experiment may do more than the papers say.
+        /// A published time with limits wider than its range.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
-        /// A cost whose range is all that the model takes.
+        /// A cost whose range also serves as its limits.
         send_ns: 12_000, "ns", Assumed, 10_000..=25_000, "a reason";
         /// A measured error.
         noise: f64 = 2.5, "mm", Derived, 0.0..=5.0 in 0.0..=1000.0, "a data sheet";

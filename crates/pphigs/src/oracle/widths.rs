@@ -1,4 +1,4 @@
-//! Numbers of bits of a pixel's fields that depend on the layout of pixel memory.
+//! Widths of the fields in pixel memory that depend on the layout.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
@@ -7,7 +7,8 @@ use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres; the value is then 12.
+    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres. In this case, the value
+    /// is 12.
     pub(crate) root_bits: u32,
 }
 

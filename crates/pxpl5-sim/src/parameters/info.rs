@@ -11,12 +11,12 @@ pub enum Standing {
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value is recollected or estimated. Its range is as wide as the published figures allow.
+    /// The value comes from memory or from an estimate. Its range is as wide as the published figures allow.
     Assumed,
 }
 
 impl Standing {
-    /// Every provenance with its name, the best first.
+    /// Every kind of provenance with its name, the best kind first.
     pub const ALL: [(&str, Self); 3] =
         [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
@@ -32,7 +32,7 @@ pub struct ParameterInfo {
     pub unit: &'static str,
     /// Provenance of the parameter's value: printed, calculated or assumed.
     pub standing: Standing,
-    /// Initial value of the parameter. The papers print this value or allow it.
+    /// Initial value of the parameter. The papers print or allow this value.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),

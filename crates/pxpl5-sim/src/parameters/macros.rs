@@ -2,8 +2,9 @@
 
 /// Declares a struct of parameters. Each parameter has an initial value, unit, provenance, range, limits and source.
 ///
-/// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::parameters::MAX). The calling crate must depend on
-/// `serde`: a table is serialized by field names, and unknown names are rejected.
+/// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::parameters::MAX). The calling crate must
+/// depend on `serde`, because the macro makes the table serializable by field names. Deserialization rejects unknown
+/// names.
 ///
 /// ```
 /// pxpl5_sim::parameters::parameter_table! {
@@ -46,7 +47,7 @@ macro_rules! parameter_table {
         }
 
         impl $name {
-            /// The initial values of all parameters. The papers print these values or allow them.
+            /// The initial values of all parameters. The papers print or allow these values.
             $vis const PAPERS: Self = Self { $($field: $value,)* };
 
             /// Unit, provenance, range and source of each parameter, in the order of the fields.
@@ -84,7 +85,7 @@ macro_rules! parameter_table {
                 }
             }
 
-            // Compares constants without looking names up, because programs check many machines.
+            // The comparison uses constants and looks up no names, because programs check many machines.
             fn check(&self) -> ::core::result::Result<(), $crate::parameters::ParameterError> {
                 $($crate::parameters::check_value(
                     stringify!($field),
@@ -111,7 +112,7 @@ macro_rules! parameter_table {
     };
 }
 
-/// Expands to the type or value of a field: a whole number, or a real number if the declaration says `f64`.
+/// Expands to the type or value of a field: a whole number, or a real number if the declaration contains `f64`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! number {
