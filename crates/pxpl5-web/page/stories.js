@@ -105,7 +105,7 @@ export const STORIES = {
   },
   race: {
     name: "Race the beam",
-    settings: { pipeline: "jitp-scanline", scene: "aircraft", triangles: "30", display: "ntsc", fields: "3600", "head.motion": "sine:20:0.5", "head.tracker": "fastrak", "head.predict": "none" },
+    settings: { pipeline: "jitp-scanline-racing", scene: "aircraft", triangles: "30", display: "ntsc", fields: "3600", "head.motion": "sine:20:0.5", "head.tracker": "fastrak", "head.predict": "none" },
     eyes: 1,
     begin: 300,
     steps: [
