@@ -59,7 +59,7 @@ def tracking_parameters() -> list[Parameter]:
 
 FIGURE_DEFINITIONS = {
     "published": "as the paper prints it, in the unit beside it",
-    "simulated": "what the model gives, in the same unit",
+    "simulated": "result of the model, in the same unit",
     "error_percent": "(simulated - published) / published, percent",
     "low": "least value when open parameters are varied within their ranges",
     "high": "greatest value when open parameters are varied within their ranges",

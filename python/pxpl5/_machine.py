@@ -51,7 +51,7 @@ PARAMETER_DEFINITIONS = {
     "standing": "published, derived or assumed",
     "low": "least value that the sources allow",
     "high": "greatest value that the sources allow",
-    "read_only": "whether it is listed only",
+    "read_only": "true if the parameter is listed but cannot be changed",
 }
 
 

@@ -220,8 +220,9 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     table(&mut text, machines);
     text.push_str(
         "\n## Application scenes\n\nThe papers do not name the machine that drew their application scenes. The table has results for three machines. Each\n\
-         result is the mean over 30 seeds of head motion with 616 fields each, which are 300 frames at 30 Hz. The published latency of the Mig\n\
-         is 4.61 fields with a deviation of 0.589 fields.\n\n\
+         result is the mean over the runs of 30 seeds of head motion. A run has 616 fields: a short warm-up, and then about 300 frames\n\
+         at 30 Hz. The column *frames* counts the frames of all runs after the warm-up. The published latency of the Mig is 4.61 fields\n\
+         with a standard deviation of 0.589 fields.\n\n\
          | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
     );
     // The papers' scenes on three possible machines.

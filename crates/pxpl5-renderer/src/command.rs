@@ -129,16 +129,6 @@ impl CommandKind {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
-
-    /// Returns the number of clocks during which the backing store is busy after the command, in parallel with the
-    /// array.
-    #[must_use]
-    pub const fn backing_clocks(self) -> u32 {
-        match self {
-            Self::StoreBacking | Self::LoadBacking => crate::isa::timing::BACKING_CLOCKS,
-            _ => 0,
-        }
-    }
 }
 
 /// An error for a command that needs a field. The layout lacks this field.

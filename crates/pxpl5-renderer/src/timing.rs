@@ -26,7 +26,7 @@ pxpl5_sim::parameters::parameter_table! {
         /// Execution time of the command that shades a region at the end of the frame.
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program with one light takes 95 us";
         /// Time to move one 32-bit block of all pixels to or from the backing store.
-        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
+        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us, about 64 chips x 4 bits a clock";
         /// Size of the backing store of each pixel, in bits.
         backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
         /// Number of bits of each pixel's backing store that a finished region occupies until it is copied.

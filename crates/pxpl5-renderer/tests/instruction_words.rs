@@ -1,6 +1,6 @@
 //! Tests of instruction words, encoded by hand from the table in `isa`, and of their clocks.
 
-use pxpl5_renderer::isa::timing::{BACKING_CLOCKS, SET_UP_CLOCKS, divide_clocks, multiply_clocks, square_root_clocks};
+use pxpl5_renderer::isa::timing::{SET_UP_CLOCKS, divide_clocks, multiply_clocks, square_root_clocks};
 use pxpl5_renderer::isa::{ArithmeticOp, ArrayInstruction, DecodeErrorKind, Expression, ExpressionUse, Operand, Test};
 use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
@@ -141,8 +141,6 @@ fn instructions_are_the_words_of_the_table() {
         assert_eq!(instruction.words() as usize, words.len());
         assert_eq!(instruction.bit_clocks(), clocks, "{instruction:?}");
         assert_eq!(instruction.clocks(), SET_UP_CLOCKS + clocks);
-        let moves = matches!(instruction, ArrayInstruction::StoreBlock { .. } | ArrayInstruction::LoadBlock { .. });
-        assert_eq!(instruction.backing_clocks(), if moves { BACKING_CLOCKS } else { 0 });
     }
     assert_eq!(square_root_clocks(0), 0);
 }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Settings have the format of experiment files. The page and the command-line program therefore run the same
-//! experiment and get the same trace hash. The page has one [`WebMachine`] for each pipeline, each in its own worker
+//! experiment and get the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
 //! thread of the browser. Models and recorded motions that a visitor drops onto the page are passed as [`Files`].
 //! `scripts/site` builds the page. Building and testing this crate needs no browser.
 //!

@@ -5,7 +5,8 @@
 //! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
 //! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
-//! | [`BACKING_CLOCKS`] | clocks a block | 2,048 = 51.2 us | assumed: 64 chips x 4 bits a clock |
+//!
+//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` has its time.
 //!
 //! One bit of one field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in the
 //! same clock. An expression arrives with its least significant bit first. A field of `w` bits therefore takes `s + w`
@@ -33,11 +34,6 @@ pub const SET_UP_CLOCKS: u32 = 4;
 /// Number of clocks of an instruction that moves no field. Assumed: 2, like "enable all" in the bit budget. The range
 /// is 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
-
-/// Number of clocks to move one 32-bit block of all pixels to or from the backing store, in the background.
-///
-/// Assumed: each of 64 chips moves 4 bits per clock. 16,384 pixels x 32 bits then take 2,048 clocks = 51.2 us.
-pub const BACKING_CLOCKS: u32 = 2048;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.
 ///
@@ -75,16 +71,6 @@ impl ArrayInstruction {
     #[must_use]
     pub fn clocks(&self) -> u32 {
         SET_UP_CLOCKS + self.bit_clocks()
-    }
-
-    /// Returns the number of clocks during which the backing store is busy after the instruction, in parallel with the
-    /// array.
-    #[must_use]
-    pub const fn backing_clocks(&self) -> u32 {
-        match self {
-            Self::StoreBlock { .. } | Self::LoadBlock { .. } => BACKING_CLOCKS,
-            _ => 0,
-        }
     }
 
     /// Returns the number of clocks in which bits move: all clocks except [`SET_UP_CLOCKS`].
