@@ -10,7 +10,7 @@ observations of the run::
     outcome.picture("left").array    # (480, 640, 3) uint8
 
 All times are simulated time, except values whose names contain "host". Lengths are in metres and angles in degrees. Axes are
-right-handed, with y up. Each number of the machine has a unit, a provenance (``standing``: published, derived or assumed), a range and
+right-handed, with y up. Each number of the machine has a unit, a provenance (``provenance``: published, derived or assumed), a range and
 a source: see :attr:`Machine.parameters`.
 
 All exceptions of this package are subclasses of :class:`Pxpl5Error`. The message states the setting, its place, the expected value

@@ -24,7 +24,7 @@ class Parameter:
     #: Unit of the value and the range, such as ns.
     unit: str
     #: Provenance: published, derived or assumed.
-    standing: str
+    provenance: str
     #: Least value that the sources allow.
     low: float
     #: Greatest value that the sources allow.
@@ -48,7 +48,7 @@ class Parameter:
 PARAMETER_DEFINITIONS = {
     "path": "board and field",
     "value": "in the unit beside it",
-    "standing": "published, derived or assumed",
+    "provenance": "published, derived or assumed",
     "low": "least value that the sources allow",
     "high": "greatest value that the sources allow",
     "read_only": "true if the parameter is listed but cannot be changed",
@@ -56,7 +56,7 @@ PARAMETER_DEFINITIONS = {
 
 
 def parameter_table(parameters: list[Parameter]) -> Table:
-    """Returns parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+    """Returns parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
     rows = [asdict(parameter) for parameter in parameters]
     for row in rows:
         row.update({key: float(row[key]) for key in ("value", "low", "high")})
@@ -129,7 +129,7 @@ class Machine(Strict, Mapping[str, Parameter]):
         return list(self._known["warnings"])
 
     def table(self) -> Table:
-        """Returns the parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+        """Returns the parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
     def __getitem__(self, path: str) -> Parameter:
@@ -155,6 +155,6 @@ class Machine(Strict, Mapping[str, Parameter]):
         return f"<pxpl5.Machine {self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers{changes}>"
 
     def _repr_html_(self) -> str:
-        rows = [[p.path, p.value, p.unit, p.standing, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
-        head = ["parameter", "value", "unit", "standing", "range", "source"]
+        rows = [[p.path, p.value, p.unit, p.provenance, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
+        head = ["parameter", "value", "unit", "provenance", "range", "source"]
         return _html.table(head, rows, f"{self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers")

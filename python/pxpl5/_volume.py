@@ -41,10 +41,10 @@ def volume_keys() -> list[str]:
 
 
 def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table:
-    """Returns a row for each figure of the SpatialGL paper, with expected value, computed value and provenance (``standing``).
+    """Returns a row for each figure of the SpatialGL paper, with expected value, computed value and provenance (``provenance``).
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """
-    with reporting(progress, "scenes") as told:
-        found = _native.volume_figures([_scene(scene) for scene in scenes], told)
+    with reporting(progress, "scenes") as reporter:
+        found = _native.volume_figures([_scene(scene) for scene in scenes], reporter)
     return table_of(found["figures"])

@@ -46,7 +46,7 @@ mod value;
 
 pub use crate::{named, parameter_table};
 pub use error::ParameterError;
-pub use info::{ParameterInfo, Standing};
+pub use info::{ParameterInfo, Provenance};
 pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};

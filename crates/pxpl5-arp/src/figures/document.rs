@@ -4,7 +4,7 @@ use super::definitions::{SEGMENTS, definitions};
 use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
 use super::fit::RATES_HZ;
 use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
-use super::row::{Row, Standing};
+use super::row::{Provenance, Row};
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use std::fmt::Write as _;
@@ -62,9 +62,9 @@ fn pictures(text: &mut String) {
 }
 
 fn head(text: &mut String, rows: &[Row]) {
-    let numbers = rows.iter().filter(|row| row.standing != Standing::Shape);
+    let numbers = rows.iter().filter(|row| row.provenance != Provenance::Shape);
     let met = numbers.clone().filter(|row| row.is_met).count();
-    let shapes = rows.iter().filter(|row| row.standing == Standing::Shape);
+    let shapes = rows.iter().filter(|row| row.provenance == Provenance::Shape);
     let shown = shapes.clone().filter(|row| row.is_met).count();
     let _ = write!(
         text,
@@ -109,7 +109,7 @@ fn line(text: &mut String, row: &Row) {
         number(row.published),
         number(row.ours),
         row.unit,
-        row.standing.text()
+        row.provenance.text()
     );
 }
 

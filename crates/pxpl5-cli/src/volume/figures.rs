@@ -111,7 +111,7 @@ fn line(text: &mut String, row: &FigureRow) {
         compact(figure.computed),
         figure.unit,
         if figure.published == 0.0 { 0.0 } else { row.error_percent },
-        figure.standing,
+        figure.provenance,
         figure.statement
     );
 }

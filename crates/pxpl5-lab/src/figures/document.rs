@@ -214,7 +214,7 @@ fn range([low, high]: [f64; 2]) -> String {
 }
 
 fn head(text: &mut String, rows: &[FigureRow]) {
-    let free = rows.iter().filter(|row| row.standing == "free").count();
+    let free = rows.iter().filter(|row| row.provenance == "free").count();
     let missed = rows.iter().filter(|row| row.misses()).count();
     let _ = write!(
         text,
@@ -269,12 +269,12 @@ fn line(text: &mut String, row: &FigureRow) {
         number(row.simulated),
         row.unit,
         row.error_percent,
-        standing(row),
+        provenance(row),
     );
 }
 
-fn standing(row: &FigureRow) -> String {
-    if row.fitted.is_empty() { row.standing.to_owned() } else { format!("{}: {}", row.standing, row.fitted) }
+fn provenance(row: &FigureRow) -> String {
+    if row.fitted.is_empty() { row.provenance.to_owned() } else { format!("{}: {}", row.provenance, row.fitted) }
 }
 
 fn misses(text: &mut String, rows: &[FigureRow]) {

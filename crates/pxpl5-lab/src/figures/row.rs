@@ -25,7 +25,7 @@ pub struct FigureRow {
     pub interval: Option<[f64; 2]>,
     /// Provenance of the row. `free`: nothing was fitted to the figure. `fitted`: a parameter was fitted. `rule`: a
     /// rule was chosen.
-    pub standing: &'static str,
+    pub provenance: &'static str,
     /// Half the width of the range that the paper prints, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
     /// Parameter that was fitted to the figure, or rule that was chosen for it. Empty if nothing was fitted or chosen.
@@ -56,7 +56,7 @@ impl FigureRow {
     #[must_use]
     pub fn new(figure: &Figure, measured: FigureValue) -> Self {
         // The provenance decides whether the row counts as a free check.
-        let (standing, fitted) = match figure.basis {
+        let (provenance, fitted) = match figure.basis {
             Basis::Free => ("free", ""),
             Basis::Fitted { parameter } => ("fitted", parameter),
             Basis::Rule { rule } => ("rule", rule),
@@ -69,7 +69,7 @@ impl FigureRow {
             error_percent: 100.0 * (measured.value - figure.value) / figure.value,
             analytic: None,
             interval: None,
-            standing,
+            provenance,
             spread: figure.spread,
             fitted,
             source: format!("{}, {}", figure.paper, figure.section),
@@ -114,7 +114,7 @@ impl FigureRow {
 /// counts 100 %.
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
-    let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
+    let free: Vec<_> = rows.iter().filter(|row| row.provenance == "free").collect();
     let errors = free.iter().map(|row| if row.simulated.is_finite() { row.error_percent.abs() } else { 100.0 });
     errors.sum::<f64>() / free.len().max(1) as f64
 }

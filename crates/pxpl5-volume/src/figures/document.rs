@@ -55,16 +55,16 @@ fn line(text: &mut String, row: &FigureRow) {
         figure.id,
         figure.statement,
         row.source,
-        standing(row),
+        provenance(row),
         expected(figure.interval, figure.published),
         figure.unit,
         number(figure.computed),
     );
 }
 
-fn standing(row: &FigureRow) -> String {
-    let standing = row.figure.standing;
-    if row.scene.is_some() { format!("{standing}, measured") } else { standing.to_string() }
+fn provenance(row: &FigureRow) -> String {
+    let provenance = row.figure.provenance;
+    if row.scene.is_some() { format!("{provenance}, measured") } else { provenance.to_string() }
 }
 
 /// Returns the expected value as text. If the paper says "over", "about" or "most", the text includes the interval.
@@ -122,7 +122,7 @@ fn definitions(text: &mut String, all: &[DefinitionRow]) {
         let _ = writeln!(
             text,
             "| {} | {} | {source} | {} | {value} {} |",
-            definition.id, definition.statement, definition.standing, definition.unit
+            definition.id, definition.statement, definition.provenance, definition.unit
         );
     }
 }
@@ -190,7 +190,7 @@ fn numbers(text: &mut String) {
         let _ = writeln!(
             text,
             "| `{path}` | {value} | {} | {} | {low} to {high} | {} |",
-            info.unit, info.standing, info.source
+            info.unit, info.provenance, info.source
         );
     }
 }

@@ -1,7 +1,7 @@
 //! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::Figure;
 use spatialgl::{
@@ -10,8 +10,8 @@ use spatialgl::{
     WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
 
-const P: Standing = Standing::Published;
-const D: Standing = Standing::Derived;
+const P: Provenance = Provenance::Published;
+const D: Provenance = Provenance::Derived;
 
 /// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
@@ -42,8 +42,8 @@ pub(super) fn row(
     computed: f64,
 ) -> Figure {
     let interval = [published - half_digit, published + half_digit];
-    let standing = if id.starts_with('P') { P } else { D };
-    Figure { id, statement, unit, published, interval, computed, standing }
+    let provenance = if id.starts_with('P') { P } else { D };
+    Figure { id, statement, unit, published, interval, computed, provenance }
 }
 
 pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
@@ -161,7 +161,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
             marked(99),
         ),
         Figure {
-            standing: D,
+            provenance: D,
             ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE))
         },
         row("D8", "queries between two clears", "queries", f64::from(queries), 0.0, per_batch),

@@ -7,7 +7,7 @@ use crate::{
     BinLayout, HalfWedge, PIXELS_PER_WORD, SliceClip, SpatialDisplay, SweptDisplay, Tiling, VolumeStats, pack_dense,
     packed_word,
 };
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
 /// A number of the paper that is an input of the model, or that follows from inputs of the model by arithmetic alone.
@@ -23,7 +23,7 @@ pub struct Definition {
     pub value: f64,
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 /// A figure of the paper, and the value that the model gives for it.
@@ -43,7 +43,7 @@ pub struct Figure {
     /// Value of the figure that this model computes.
     pub computed: f64,
     /// Provenance of the published value: printed or derived.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 impl Figure {
@@ -65,7 +65,7 @@ const fn row(
     id: &'static str,
     statement: &'static str,
     unit: &'static str,
-    standing: Standing,
+    provenance: Provenance,
     (published, half_digit): (f64, f64),
     computed: f64,
 ) -> Figure {
@@ -76,7 +76,7 @@ const fn row(
         published,
         interval: [published - half_digit, published + half_digit],
         computed,
-        standing,
+        provenance,
     }
 }
 
@@ -86,8 +86,8 @@ pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 /// Number of months in which the performance of CPUs doubles (published, P20).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
-const P: Standing = Standing::Published;
-const D: Standing = Standing::Derived;
+const P: Provenance = Provenance::Published;
+const D: Provenance = Provenance::Derived;
 
 /// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
 #[must_use]
@@ -101,7 +101,7 @@ pub fn definitions() -> Vec<Definition> {
 
 /// Returns a definition. The number is printed in the paper if `id` begins with P. Otherwise the number is derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
+    Definition { id, statement, value, unit, provenance: if id.starts_with('P') { P } else { D } }
 }
 
 /// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
