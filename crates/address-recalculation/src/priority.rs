@@ -38,7 +38,7 @@
 //!
 //! # Not here
 //!
-//! The faces, their source, and the treatment of late updates belong to the pipeline that draws.
+//! The pipeline that draws supplies the pixels of the faces and handles late updates.
 //!
 //! # Sources
 //!

@@ -44,7 +44,7 @@ pub enum Frame {
 pub struct Structure {
     /// Name of the structure for display. No result depends on the name.
     pub name: String,
-    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use them.
+    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use these vertices.
     pub vertices: Range<usize>,
     /// Range of the structure's triangles in [`Scene::triangles`].
     pub triangles: Range<usize>,
@@ -221,8 +221,8 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. The copy
-    /// serves code that has no model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. Renderers
+    /// without model matrices, such as a reference renderer, can draw the copy.
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.

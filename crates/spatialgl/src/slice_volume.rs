@@ -68,7 +68,7 @@ pub struct WedgePlanes {
     pub fraction_bits: Option<u32>,
 }
 
-/// The test whether a point is in a wedge, given its distances from the two boundary planes.
+/// The test that decides if a point is in a wedge, given the point's distances from the two boundary planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside

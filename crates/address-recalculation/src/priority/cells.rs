@@ -182,8 +182,8 @@ impl Cells {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. It is the
-    /// distance to the border of the memory's block, or to the memory's nearest occupied cell.
+    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. This
+    /// distance leads to the border of the memory's block of cells, or to the memory's nearest occupied cell.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();

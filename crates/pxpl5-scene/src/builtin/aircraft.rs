@@ -1,4 +1,5 @@
-//! A swept-wing jet with a closed surface of 100 triangles. The Slats method can draw this number of triangles in time.
+//! A swept-wing jet with a closed surface of 100 triangles. Slats, a rendering method of Pixel-Planes 5 with a new
+//! picture in every field, can draw this number of triangles in time.
 //!
 //! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
 //! The finished aircraft is scaled to the radius of the scene `mig` and uses the same flight path. Every part is a

@@ -76,11 +76,11 @@ impl Places {
 /// because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`], which distinguishes vertices at one point.
+/// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// The index of a normal, counted from 1. For a corner without a normal it is the smoothing group of the face: 0,
-    /// or a number from 2^31 on.
+    /// The index of a normal, counted from 1. For a corner without a normal, the number is the smoothing group of the
+    /// face: 0, or a number from 2^31 on.
     Normal,
     /// The colour of a face: red, green and blue, packed with red in the lowest byte.
     Colour,
@@ -132,7 +132,8 @@ pub(super) struct Model {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
-    /// Number of bytes of other files that belong to the model. These bytes count as part of the model's file.
+    /// Number of bytes of other files that belong to the model, for example glTF buffers beside the model's file. These
+    /// bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
