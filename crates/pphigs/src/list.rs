@@ -25,7 +25,8 @@ pub struct DisplayList {
     /// Structures, in the order of their triangles and of their spheres. The ranges of successive structures have no
     /// gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the frame of reference of each structure.
+    /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
+    /// head).
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,

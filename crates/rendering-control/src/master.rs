@@ -37,8 +37,8 @@ struct RenderStage {
     tokens_out: u16,
 }
 
-/// Numbers of reports that the slaves have sent about a frame or drawing. Some slaves have not finished this frame or
-/// drawing.
+/// Reports of the slaves about one drawing (picture of one eye) or one frame that not all slaves have finished.
+/// `slaves` is the number of reports, and `entries` the sum of the reported bin entries of each region.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
