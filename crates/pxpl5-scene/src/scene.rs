@@ -55,7 +55,7 @@ pub struct Structure {
     /// Motion of the structure as a function of time, or `None` for a structure that does not move by itself.
     pub hinge: Option<Hinge>,
     /// True if triangles that face away from the eye are not drawn. The corners of such a triangle run clockwise, seen
-    /// from the eye. Culling is correct for surfaces without holes that are seen from outside.
+    /// from the eye. Culling changes no picture of a surface without holes that is seen from outside.
     pub culls_back_faces: bool,
 }
 
@@ -195,7 +195,7 @@ impl Scene {
     }
 
     /// Returns the same scene with back-face culling in all structures. Culling is correct for surfaces without holes
-    /// that are seen from outside. With other surfaces, their inner sides become invisible.
+    /// that are seen from outside. The inner side of an open surface becomes invisible.
     #[must_use]
     pub fn culled(mut self) -> Self {
         self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);

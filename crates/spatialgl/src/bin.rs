@@ -3,8 +3,8 @@
 //!
 //! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
 //! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
-//! the whole primitive on their negative side. A region of space is defined by the signs of its points. A primitive
-//! cannot touch a region if one plane separates the primitive from the region.
+//! the whole primitive on their negative side. A region of space is defined by the signs of the plane equations at its
+//! points. A primitive cannot touch a region if one plane separates the primitive from the region.
 
 use serde::{Deserialize, Serialize};
 

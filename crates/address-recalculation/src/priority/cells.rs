@@ -73,8 +73,8 @@ impl CellAssignment {
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the number of the outermost ring that memory k holds. The value does not apply to the slowest memory,
-    /// which has no outer limit.
+    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
+    /// the slowest memory, which has no outer limit.
     ///
     /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
@@ -85,7 +85,7 @@ impl CellAssignment {
         (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
     }
 
-    /// Returns the distance, in metres, between a position and the border at which memory k begins.
+    /// Returns the distance, in metres, between a position and the border at which memory k = `memory` begins.
     ///
     /// The distance is 0 on the border and outside of the border. For memory 0, which begins at the eye, the distance
     /// is always 0.
@@ -94,8 +94,8 @@ impl CellAssignment {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance, in metres, between a position and the border of memory k to memory k + 1. The
-    /// distance is 0 outside the border.
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to the
+    /// slower memory k + 1. The distance is 0 outside the border.
     ///
     /// Returns `None` for the slowest memory, which has no such border.
     #[must_use]

@@ -91,7 +91,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors of the update rates of the given memories, in percent.
+    /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
+    /// compared with table 1.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();

@@ -132,8 +132,8 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
     face
 }
 
-/// Adds a solid of flat faces with outward normals. If the volume is negative, the faces face inwards (the solid is a
-/// mirror image), so they are reversed.
+/// Adds a solid of flat faces with outward normals. If the volume of the solid is negative, the solid is a mirror image
+/// with inward normals, so all faces are reversed.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
     let six_volumes =
         |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };

@@ -82,13 +82,14 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds a vertex where a ray from the spine meets the surface, and returns its index.
+/// Adds a vertex where a ray from inside the head meets the surface, and returns its index.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
 }
 
-/// A ray from a point on the spine outwards, which meets the surface of the head at one vertex.
+/// A ray from a point on the spine (a curve inside head and neck, see [`SPINE`]) outwards. The ray meets the surface of
+/// the head at one vertex.
 struct Ray {
     origin: DVec3,
     direction: DVec3,

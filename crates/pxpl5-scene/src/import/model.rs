@@ -287,7 +287,7 @@ impl Model {
         vertices
     }
 
-    /// Returns the number of the group of vertices that share one mean normal with this vertex. Faces of different
+    /// Returns the index of this vertex's group. All vertices of a group share one mean normal. Faces of different
     /// colours share groups at their common points. Faces of different smoothing groups share no group.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
