@@ -199,7 +199,8 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Reads the addresses at which the next kernel continues from the registers after a call.
+    /// Returns the addresses for the next output. After a call of a kernel, the processor's registers hold these
+    /// addresses.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }

@@ -139,7 +139,7 @@ impl Cells {
     /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
     ///
     /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
-    /// this.
+    /// such a cascade.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;

@@ -13,7 +13,8 @@ use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
-/// Positions of points, in single precision if this is exact and otherwise in double precision.
+/// Positions of points. The positions are in single precision if this precision is exact for the file, and otherwise in
+/// double precision.
 pub(super) enum Places {
     Single(Vec<Vec3>),
     Double(Vec<DVec3>),
