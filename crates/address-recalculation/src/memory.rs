@@ -238,9 +238,9 @@ impl DisplayMemory {
         arriving.first_part_at
     }
 
-    /// Returns the bit mask of the memories that must swap together with this memory, if this memory is ready to swap
-    /// at a retrace at `now`. Returns `None` if no request precedes this retrace, or if the requested update is
-    /// incomplete.
+    /// Returns `None` if this memory cannot swap at a retrace at `now`, because no request precedes the retrace or the
+    /// requested update is incomplete. Otherwise returns the bit mask of the memories that must swap at the same
+    /// retrace, or 0 if this memory swaps alone.
     pub(crate) fn is_ready(&self, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         self.buffers[usize::from(request.buffer)].missing.is_empty().then_some(request.together)

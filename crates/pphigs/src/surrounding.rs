@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
 /// Margin around a view when the code finds the views of a primitive. The sides of the view are moved outwards by this
-/// fraction of the projection's scale (rule 4).
+/// fraction of the projection's scale (rule 4 of kernels/sort_rules.md).
 const MARGIN: f32 = 1.0 / 32.0;
 
 /// Work of the TRANSFORM of a share of primitives for six views from one eye position.

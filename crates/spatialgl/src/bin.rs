@@ -30,7 +30,7 @@ pub struct BinLayout {
     pub tolerance: f64,
 }
 
-/// The choice of the planes that decide which bins a primitive is in.
+/// The choice of the planes with which the test for each bin decides if a primitive belongs to the bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {

@@ -78,7 +78,8 @@ pub enum WedgeTest {
     Shader(TieRule),
     /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances.
+    /// This number of square pixels is added to the product of the distances from both planes before the sign is
+    /// tested.
     Hyperbolic(f64),
 }
 

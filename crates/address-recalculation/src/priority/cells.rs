@@ -38,8 +38,8 @@ pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the index of the column of cells that contains a coordinate. This column is the last column that begins at
-/// or before the coordinate.
+/// Returns the index of the column of cells that contains a coordinate. The result is the last column that begins at or
+/// before the coordinate.
 ///
 /// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {

@@ -261,9 +261,9 @@ const TEXEL_DEG: f64 = 90.0 / 512.0;
 /// threshold and cell side is fixed, because it fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
-    /// The threshold as text, in pixels of the display or texels of an ideal face.
+    /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The threshold in degrees.
+    /// The threshold of the image error in degrees.
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
