@@ -484,8 +484,8 @@ impl SetupBatches<'_> {
     }
 }
 
-/// Returns the piece of an entry. `clip` produces all pieces of the triangle, and the entry has the index of its piece.
-/// Returns `None` if the triangle is invisible.
+/// Returns the piece of a clipped triangle to which a bin entry refers. `clip` produces all pieces of the triangle, and
+/// the entry has the index of its piece. Returns `None` if the triangle is invisible.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();

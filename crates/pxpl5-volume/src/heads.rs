@@ -369,7 +369,7 @@ fn around(place: DVec3) -> [f64; 2] {
 }
 
 /// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
-/// spread over the scene's list.
+/// spread over the scene's list of vertices.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands

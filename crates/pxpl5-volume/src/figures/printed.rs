@@ -1,4 +1,4 @@
-//! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
 use pxpl5_sim::parameters::Provenance;
@@ -20,7 +20,7 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 /// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures that need single slices.
+/// Returns all figures of the paper that are measured on single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
