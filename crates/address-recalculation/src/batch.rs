@@ -35,7 +35,8 @@ pub(crate) struct Batch {
     met: Met,
 }
 
-/// Intermediate values of a group: viewing vectors, rotated vectors, components along the face's axes, and positions.
+/// Intermediate values of a group of pixels: viewing vectors, rotated vectors, components along the face's axes, and
+/// positions.
 #[derive(Clone, Debug)]
 struct Met {
     vectors: [Each<i32>; 3],

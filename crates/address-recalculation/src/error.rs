@@ -9,7 +9,7 @@ pub enum ArpError {
     /// A parameter is out of range. The text has its path, the expected and the found value.
     #[error("{0}")]
     Number(String),
-    /// The lens folds the picture over itself, or cannot have the requested viewing angle.
+    /// The lens folds the picture over itself, or is not suitable for the requested viewing angle.
     #[error("arp.lens: expected {expected}, found {found}")]
     Lens {
         /// The violated rule.

@@ -147,7 +147,8 @@ impl FaceGeometry {
         self.texels - 2 * self.guard
     }
 
-    /// Returns the tangent of half the viewing angle with which a renderer draws a face: texels / inner.
+    /// Returns the tangent of half the viewing angle with which a renderer draws a face: `texels` /
+    /// [`inner`](Self::inner).
     #[must_use]
     pub fn tangent(&self) -> f64 {
         f64::from(self.texels) / f64::from(self.inner())

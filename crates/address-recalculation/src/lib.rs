@@ -62,9 +62,9 @@
 //!
 //! # Reference model and fast model
 //!
-//! [`literal`] is the reference model. Clock by clock, this model has the registers of every stage, partial products,
-//! restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in doubles,
-//! which are exact for these word lengths. tests/equal.rs checks that both give identical bits.
+//! [`literal`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
+//! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
+//! doubles, which are exact for these word lengths. tests/equal.rs checks that both give identical bits.
 //!
 //! # Not modelled
 //!

@@ -238,15 +238,16 @@ impl DisplayMemory {
         arriving.first_part_at
     }
 
-    /// Returns the bit mask of the memories that must swap together with this memory. Returns `None` if no request
-    /// precedes this retrace, or if the requested update is incomplete.
+    /// Returns `None` if this memory cannot swap at a retrace at `now`, because no request precedes the retrace or the
+    /// requested update is incomplete. Otherwise returns the bit mask of the memories that must swap at the same
+    /// retrace, or 0 if this memory swaps alone.
     pub(crate) fn is_ready(&self, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         self.buffers[usize::from(request.buffer)].missing.is_empty().then_some(request.together)
     }
 
-    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns this buffer. Otherwise counts a
-    /// missed retrace.
+    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns this buffer. Otherwise, the function
+    /// counts a missed retrace if the request came before this retrace.
     pub(crate) fn retrace(&mut self, may_swap: bool, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         // Remember since when the update is late.

@@ -22,8 +22,8 @@ pub enum Interpolation {
     View,
 }
 
-/// The times for which a field's picture is computed. The picture shows the view from the viewer's position and
-/// orientation at this time.
+/// The choice of the times for which the parts of a field's picture are computed. Each part shows the view from the
+/// viewer's position and orientation at its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// One time for the whole field.

@@ -1,10 +1,11 @@
 //! Work of a board before the first triangle of a pass. The board applies edits to the display list and places the
 //! list's structures for an eye.
 //!
-//! Both steps run code in the style of a compiler (`pxpl5_geometry::kernel::place_source`). The code is the same for
-//! every version of the kernels. The code computes the view-dependent part of each structure's parameter block before
-//! the pass. The simulator then writes the block that a kernel reads. Both blocks are equal in every word
-//! (tests/begin.rs).
+//! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps run
+//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). This code is the same for every
+//! version of the kernels (the code that transforms primitives). The code computes the view-dependent part of each
+//! structure's parameter block before the pass. A kernel reads a block that the simulator has computed and written. The
+//! block of the code equals this block in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -63,13 +64,13 @@ impl Work for EditWork<'_> {
     }
 }
 
-/// Work at the beginning of a pass over the display list. The work resets bins and places structures, for one eye or
-/// both eyes.
+/// Work at the beginning of a pass over the display list. The work empties the bins and places structures (computes
+/// their matrices and light in eye coordinates), for one eye or both eyes.
 #[derive(Clone, Debug)]
 pub struct PassStartWork {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
-    /// Number of bins to reset for each eye, 0 if there are no bins.
+    /// Number of bins to empty for each eye, 0 if there are no bins.
     bins: u32,
     /// For each structure, by its index in the display list: true if the work places the structure. `None` places all
     /// structures.
@@ -105,7 +106,7 @@ impl PassStartWork {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns the structures of an eye that the work places. The result omits structures that cannot be drawn.
+    /// Returns those of an eye's structures that this work places. The result omits structures that cannot be drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);

@@ -151,12 +151,12 @@ impl Share {
         Ok(())
     }
 
-    /// Returns the address of the first sphere.
+    /// Returns the address of the first sphere of the display list in the board's memory.
     pub(crate) fn place_of_spheres(&self) -> u32 {
         DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
     }
 
-    /// Returns the address at the end of the display list.
+    /// Returns the first address after the display list in the board's memory.
     pub(crate) fn end_of_list(&self) -> u32 {
         self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
@@ -184,7 +184,7 @@ impl OutputSize {
     }
 }
 
-/// Addresses of a view's output.
+/// Addresses of a view's output: the commands, and the entries of each bin.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
@@ -199,7 +199,8 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Reads the addresses for the next kernel from the registers after a call.
+    /// Returns the addresses for the next output. After a call of a kernel, the processor's registers hold these
+    /// addresses.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }

@@ -25,7 +25,7 @@ use std::sync::Arc;
 /// The commands before and after a region's primitives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RegionEnvelope {
-    /// True if the commands begin with the selection and clearing of the region's context.
+    /// True if the commands begin with the selection and clearing of the region's context in pixel memory.
     pub begin: bool,
     /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have such a
     /// command.
@@ -85,7 +85,7 @@ struct Parts {
     triangles: Range<u32>,
     spheres: Range<u32>,
     words_each: [u32; 2],
-    /// True if every message must begin with the selection of its context.
+    /// True if every message must begin with the selection of the region's context in pixel memory.
     selects: bool,
     clears_next: bool,
     ending_words: u32,
@@ -484,8 +484,8 @@ impl SetupBatches<'_> {
     }
 }
 
-/// Returns the piece of an entry. `clip` produces all pieces of the triangle, and the entry has the index of its piece.
-/// Returns `None` if the triangle is invisible.
+/// Returns the piece of a clipped triangle to which a bin entry refers. `clip` produces all pieces of the triangle, and
+/// the entry has the index of its piece. Returns `None` if the triangle is invisible.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();

@@ -25,7 +25,8 @@ pub struct DisplayList {
     /// Structures, in the order of their triangles and of their spheres. The ranges of successive structures have no
     /// gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the frame of reference of each structure.
+    /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
+    /// head).
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
@@ -226,14 +227,14 @@ impl Share {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns the share's triangles whose index in the display list is in `of`. The result is a range of indices among
-    /// all triangles that the GP holds.
+    /// Returns those of the share's triangles that belong to a structure. `of` is the structure's range of triangles in
+    /// the display list. The result is a range of indices among all triangles that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns the share's spheres whose index in the display list is in `of`. The result is a range of indices among
-    /// all spheres that the GP holds.
+    /// Returns those of the share's spheres that belong to a structure. `of` is the structure's range of spheres in the
+    /// display list. The result is a range of indices among all spheres that the GP holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -246,8 +247,9 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the share's primitives whose index in the display list is in `of`, as indices in the display list.
-    /// `positions` is the range of the share, as indices among the primitives that the GP holds.
+    /// Returns the indices, in the display list, of those of the share's primitives that belong to a structure. `of` is
+    /// the structure's range of primitives in the display list. `positions` is the range of the share, as indices among
+    /// the primitives that the GP holds.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;

@@ -14,8 +14,8 @@ const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 /// Largest number of words of an order before its views.
 const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 
-/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order are its head. The
-/// other words are views.
+/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order come before its
+/// views. All other words are views.
 ///
 /// # Errors
 ///
@@ -52,7 +52,8 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// The message buffer must hold exactly the words of the order. An order without a head takes no time.
+    /// The message buffer must hold exactly the words of the order. An order without words before its views takes no
+    /// time.
     #[test]
     fn an_order_lies_in_the_buffer_word_for_word() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());

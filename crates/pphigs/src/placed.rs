@@ -27,7 +27,7 @@ pub struct PlacedStructure {
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The transformed vertices of a structure, for the range [`named`](PlacedStructure::named).
+/// The transformed vertices of a structure, for the range [`PlacedStructure::named`] of the display list's vertices.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,

@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
 /// Margin around a view when the code finds the views of a primitive. The sides of the view are moved outwards by this
-/// fraction of the projection's scale (rule 4).
+/// fraction of the projection's scale (rule 4 of kernels/sort_rules.md).
 const MARGIN: f32 = 1.0 / 32.0;
 
 /// Work of the TRANSFORM of a share of primitives for six views from one eye position.
@@ -95,8 +95,8 @@ impl CubeTransform<'_> {
         pass.run_kernels(processor, kernel, needs, to, Some(marks))
     }
 
-    /// Writes a mark word for every primitive of the drawn structures. Bit `n` is set if view `n` can contain the
-    /// primitive. Returns the time, and the number of primitives of each view.
+    /// Writes a mark word for every primitive of the drawn structures. Bit `n` of the word is set if view `n` can
+    /// contain the primitive. Returns the time, and the number of primitives of each view.
     fn sort(&self, processor: &mut Processor, kernel: Kernel) -> Result<(Span, Vec<PrimitiveCounts>), ProcessorFault> {
         let [.., ahead] = self.passes;
         let [triangles, spheres, _] = marks(ahead);
@@ -124,8 +124,9 @@ impl CubeTransform<'_> {
     }
 }
 
-/// Returns three addresses: of the mark words of triangles (after the display list), of the mark words of spheres, and
-/// of the end of the mark words.
+/// Returns three addresses of mark words, which state for each primitive the views that can contain the primitive. The
+/// mark words of triangles begin at the first address (after the display list), and the mark words of spheres at the
+/// second. The third address is the end of the mark words.
 fn marks(pass: &Pass) -> [u32; 3] {
     let share = pass.share();
     let triangles = share.end_of_list();
@@ -133,10 +134,11 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// Primitives of one structure for which the code finds the views.
+/// The primitives of one structure, and the addresses that the code needs to find the views of each primitive.
 ///
 /// `held` is the range of these primitives' indices among all primitives that the GP holds. `first` is the address of
-/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
+/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word (the
+/// bits of the views that can contain a primitive).
 struct ViewSort {
     held: Range<usize>,
     first: u32,

@@ -87,7 +87,7 @@ impl MemoryPart {
     }
 }
 
-/// Returns the address of the lists of primitives that a search finds in its windows.
+/// Returns the address of the lists of primitives that a search finds in its windows (rectangles of the screen).
 fn entries(processor: &Processor) -> u32 {
     processor.memory_bytes().saturating_sub(ENTRY_BYTES)
 }
@@ -187,12 +187,13 @@ impl Pass {
     }
 }
 
-/// Work of searching a stored pass for the primitives in the given windows.
+/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory) for the primitives in the given
+/// windows (rectangles of the screen).
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
-    /// Part of memory with the stored pass.
+    /// Part of memory that holds the result of the TRANSFORM to search.
     pub part: MemoryPart,
-    /// Frame lines and regions of the picture for which the pass was stored.
+    /// Frame lines and regions of the picture for which [`Pass::keep`] stored the pass.
     pub viewport: Viewport,
     /// Division of the picture into windows.
     pub grid: RegionGrid,
@@ -239,7 +240,7 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Runs the code on a board that holds the stored pass. Returns `None` if no pass is stored.
+    /// Runs the code on a board that holds a pass stored by [`Pass::keep`]. Returns `None` if no pass is stored.
     ///
     /// # Errors
     ///
@@ -297,8 +298,8 @@ impl WindowSearchWork<'_> {
         (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
     }
 
-    /// Searches the bounding boxes of all stored primitives. The length of each window's list is known in advance, so
-    /// each list begins at the end of the previous list.
+    /// Searches the bounding boxes of all stored primitives for primitives in the windows. The length of each window's
+    /// list is known in advance, so each list begins at the end of the previous list.
     fn search(
         &self,
         processor: &mut Processor,

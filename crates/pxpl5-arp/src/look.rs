@@ -67,8 +67,8 @@ impl Faces {
         Ok((picture(table.width(), &pixels, |colour| *colour), stats))
     }
 
-    /// Returns the picture's width and, for each pixel row by row, the memory that is shown. A pixel is `None` if all
-    /// memories are empty there.
+    /// Returns the picture's width and, for each pixel row by row, the index of the memory whose colour is shown. A
+    /// pixel at which all memories are empty has `None`.
     ///
     /// # Errors
     ///

@@ -65,7 +65,8 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
 /// Returns all pictures of a walk at a speed of `m_per_s`.
 ///
 /// The picture `eye` is the view through the display's lens. `eye-flat` and `cuts` show the view without a lens, and
-/// are omitted if the view is too wide for a plane. The other pictures are flat where possible.
+/// are omitted if the view is too wide for a plane. All other pictures are drawn without lens distortion, unless the
+/// view is too wide for a plane.
 ///
 /// The chosen frame and direction uncover most of the scene behind the widest tear. If no memories meet in a cut, the
 /// view is along the path at the end of the walk.

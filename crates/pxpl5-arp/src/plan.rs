@@ -54,9 +54,11 @@ pub struct Plan {
 /// A threshold in pixels or texels. The threshold becomes an angle when the display's resolution is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
-    /// Threshold in pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
+    /// Threshold in pixels of the display. One pixel is the horizontal angle of view divided by the number of pixels in
+    /// a line.
     Pixels(f64),
-    /// Threshold in texels of a face. One texel is 90 degrees divided by the texels of an edge.
+    /// Threshold in texels of a face. One texel is 90 degrees divided by the number of texels along an edge of the
+    /// face.
     Texels(f64),
 }
 

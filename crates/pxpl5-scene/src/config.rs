@@ -22,8 +22,8 @@ pub const IMPORT_RADIUS_M: f64 = 0.148;
 ///
 /// Derived for [`crate::Sway`] of scale 1. The gaze deviates by at most 8.5 degrees sideways and 6.5 vertically, with a
 /// tilt of at most 7.5 degrees. The greatest vertical deviation is 6.5 cos 7.5 + 8.5 sin 7.5 = 7.6 degrees. Half the
-/// view's height is 23.4 degrees, so 15.8 remain. The head comes as near as 0.9 times its mean distance, where the
-/// model's angular radius is asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
+/// view's height is 23.4 degrees, so 15.8 degrees remain for the model. The head comes as near as 0.9 times its mean
+/// distance, where the model's angular radius is asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
 pub const WHOLE_DISTANCE_RADII: f64 = 4.4;
 
 /// Distance of the eye from the centre of a built-in model, as a multiple of the model's radius.
@@ -51,8 +51,9 @@ pub const MAX_FILE_BYTES: u64 = 256 << 20;
 /// including the file itself.
 pub const MEMORY_TIMES_FILE: u64 = 7;
 
-/// Number of bytes that an imported model may take in addition to [`MEMORY_TIMES_FILE`] times its file. Small files
-/// cannot exhaust the memory, so they need no strict limit. Assumed: any value is plausible.
+/// Number of bytes that an imported model may take in addition to [`MEMORY_TIMES_FILE`] times the size of its file.
+/// Models from small files cannot exhaust the memory, so their limit need not be strict. Assumed: any value is
+/// plausible.
 pub const MEMORY_FLOOR_BYTES: u64 = 4 << 20;
 
 /// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed: any value is

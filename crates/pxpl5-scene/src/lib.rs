@@ -19,7 +19,7 @@
 //!
 //! | name | triangles | spheres | provenance of the counts |
 //! |---|---|---|---|
-//! | `aircraft` | 100 | | assumed: Slats can draw it in time |
+//! | `aircraft` | 100 | | assumed: few enough for Slats to draw in one field |
 //! | `mig` | 417 | | published TR94 |
 //! | `molecules` | 2,620 | 1,219 | assumed |
 //! | `head` | 59,592 | | assumed |

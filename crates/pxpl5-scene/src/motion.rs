@@ -25,14 +25,15 @@ pub enum HeadPath {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
     },
-    /// The head stands at `eye` and turns to the left (about +y) at a constant rate. At time 0 it looks along -z.
+    /// The head stands at `eye` and turns to the left (about +y) at a constant rate. At time 0 the head looks along -z.
     Pan {
         /// Position of the head in the world, metres.
         eye: Vec3,
         /// Turning rate of the head, degrees per second. A negative rate turns right.
         deg_per_s: f64,
     },
-    /// The head circles around `target` in a horizontal plane and looks at it. At time 0 the head is on the +z side.
+    /// The head circles around `target` in a horizontal plane and always looks at `target`. At time 0 the head is on
+    /// the +z side.
     Orbit {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -43,8 +44,8 @@ pub enum HeadPath {
         /// Angular rate on the circle, degrees per second. With a positive rate the head moves towards +x first.
         deg_per_s: f64,
     },
-    /// The head looks at `target` from the +z side. The added [`Sway`] lets it lean and walk to and fro around the
-    /// target.
+    /// The head looks at `target` from the +z side. The added [`Sway`] moves the head around the target and changes the
+    /// distance.
     Look {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -247,7 +248,7 @@ fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
 }
 
 /// Returns the position and orientation of an upright head at `eye` that looks at `target`. If both positions are
-/// equal, the head looks along -z. If it looks straight up, its feet point towards +z.
+/// equal, the head looks along -z. If the head looks straight up, its lower side points towards +z.
 fn facing(eye: DVec3, target: DVec3) -> (DVec3, DQuat) {
     let back = (eye - target).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);

@@ -44,7 +44,7 @@ pub enum Frame {
 pub struct Structure {
     /// Name of the structure for display. No result depends on the name.
     pub name: String,
-    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use them.
+    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use these vertices.
     pub vertices: Range<usize>,
     /// Range of the structure's triangles in [`Scene::triangles`].
     pub triangles: Range<usize>,
@@ -55,7 +55,7 @@ pub struct Structure {
     /// Motion of the structure as a function of time, or `None` for a structure that does not move by itself.
     pub hinge: Option<Hinge>,
     /// True if triangles that face away from the eye are not drawn. The corners of such a triangle run clockwise, seen
-    /// from the eye. Culling is correct for surfaces without holes that are seen from outside.
+    /// from the eye. Culling changes no picture of a surface without holes that is seen from outside.
     pub culls_back_faces: bool,
 }
 
@@ -195,7 +195,7 @@ impl Scene {
     }
 
     /// Returns the same scene with back-face culling in all structures. Culling is correct for surfaces without holes
-    /// that are seen from outside. With other surfaces, their inner sides become invisible.
+    /// that are seen from outside. The inner side of an open surface becomes invisible.
     #[must_use]
     pub fn culled(mut self) -> Self {
         self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);
@@ -221,8 +221,8 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. The copy
-    /// serves code that has no model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. Renderers
+    /// without model matrices, such as a reference renderer, can draw the copy.
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.

@@ -37,7 +37,7 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the matrix to eye coordinates from the coordinates of `frame`, the world or the head.
+    /// Returns the matrix from the coordinates of `frame` (the world or the head) to eye coordinates.
     #[must_use]
     pub fn to_eye(&self, frame: Frame) -> Mat4 {
         match frame {
@@ -61,7 +61,7 @@ pub struct HmdConfig {
     pub height_px: u32,
     /// Distance from the eye to the near plane, metres. Nothing nearer is drawn.
     pub near_m: f64,
-    /// Distance from the eye to the far plane, metres. Nothing beyond it is drawn.
+    /// Distance from the eye to the far plane, metres. Nothing farther away is drawn.
     pub far_m: f64,
     /// Distance from the head at which the optical axes of both eyes meet, metres. The axes are turned towards each
     /// other, and each picture is centred on its axis. `None` for parallel axes.

@@ -15,7 +15,7 @@ pub enum VolumeError {
         place: String,
         /// Path that no setting has.
         found: String,
-        /// The valid path that is most similar.
+        /// The valid path that is most similar to the given path.
         nearest: String,
     },
     /// The value that was given for a setting is not allowed.

@@ -1,8 +1,8 @@
 //! Comparison of two displays for a moving viewer: the volume, and a head-mounted display of the same latency.
 //!
-//! A volume does not move, so a moving viewer sees another side of the volume at once. The errors of a volume come from
-//! the positions of its voxels. A head-mounted display draws each picture for a past pose of the head, so its errors
-//! come from its latency.
+//! A volume does not move, so a moving viewer sees another side of the volume without delay. The errors of a volume
+//! come from the positions of its voxels. A head-mounted display draws each picture for a past pose of the head, so its
+//! errors come from its latency.
 //!
 //! # Behaviour
 //!
@@ -333,7 +333,7 @@ impl<'a> HeadComparison<'a> {
     }
 }
 
-/// Returns the position of a point in a flat picture that the head sees. The picture has focal length 1, with x to the
+/// Returns the position of a point in a flat picture seen from the head. The picture has focal length 1, with x to the
 /// right and y down. Returns `None` if the point is behind the head.
 fn direction(head: &Pose, point: DVec3) -> Option<DVec2> {
     let seen = head.view_of(point);
@@ -361,14 +361,15 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Returns azimuth and elevation of a position in degrees, measured as for cameras.
+/// Returns azimuth and elevation of a position in degrees, as for cameras: the azimuth from +z to +x, the elevation
+/// above the horizon.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
 /// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
-/// spread over the scene's list.
+/// spread over the scene's list of vertices.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands

@@ -12,7 +12,8 @@ use spatialgl::{
 
 /// All settings that determine a volume, and the numbers of its time model.
 ///
-/// [`Self::paper`] has the paper's values where the paper gives them. We chose the other values within their ranges.
+/// [`Self::paper`] has the values of the paper. Values that the paper does not give are assumed, each within a stated
+/// range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSettings {
     /// Number of slices, width, height and spin of the display.

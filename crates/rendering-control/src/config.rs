@@ -62,7 +62,8 @@ impl RenderingControlConfig {
         self.picture.viewport
     }
 
-    /// Returns the half of the frame buffer that is hidden while this frame is drawn. Half 0 is visible at the start.
+    /// Returns the index of the half of the frame buffer that receives this frame. This half is hidden while the frame
+    /// is drawn. Half 0 is visible at the start.
     pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
         (frame.next().0 % 2) as u8
     }

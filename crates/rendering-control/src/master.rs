@@ -8,7 +8,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
-/// State of a renderer, from the messages that the master has received.
+/// State of a renderer, as it follows from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -37,8 +37,8 @@ struct RenderStage {
     tokens_out: u16,
 }
 
-/// Numbers of reports that the slaves have sent about a frame or drawing. Some slaves have not finished this frame or
-/// drawing.
+/// Reports of the slaves about one drawing (picture of one eye) or one frame that not all slaves have finished.
+/// `slaves` is the number of reports, and `entries` the sum of the reported bin entries of each region.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,

@@ -22,7 +22,7 @@ pub(crate) struct Token {
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that have not finished with the token, including the slave that holds it.
+    /// Number of slaves that have not finished with the token, including the slave that holds the token.
     pub(crate) slaves_left: u16,
     /// Destination of the region's pixels at its end. The last slave adds the command for this destination.
     pub(crate) end: RegionEnd,
@@ -33,9 +33,9 @@ pub(crate) struct Token {
 pub(crate) enum RegionEnd {
     /// The region stays in pixel memory, and the renderer waits for a copy command.
     Held,
-    /// The region goes to the renderer's backing store and stays there.
+    /// The region goes to the renderer's backing store and stays there until the master sends a copy command.
     Stored,
-    /// The region goes to its frame buffer at once.
+    /// The region goes through the backing store to its frame buffer, without a further command.
     Copied,
 }
 

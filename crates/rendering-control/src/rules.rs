@@ -1,4 +1,5 @@
-//! The rules of TR94. Each rule is a function of the progress of all stages, and returns true if a stage may begin.
+//! The rules of TR94 for the beginning of each stage. Each rule is a function of the progress of all stages, and
+//! returns true if the stage may begin.
 
 use pxpl5_wire::PictureNumber;
 
@@ -64,20 +65,20 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// Four stages must be complete: SEND of the frame, TRANSFORM of the previous frame, RENDER of the 2nd previous
-    /// eye, and COPY of the 3rd previous eye. Without RENDER and COPY, older drawings would still use the buffers. For
-    /// mono frames, read "frame" instead of "eye".
+    /// Four stages must be complete: SEND of the frame, TRANSFORM of the previous frame, RENDER of the second previous
+    /// drawing, and COPY of the third previous drawing. (A drawing is the picture of one eye, or the whole picture of a
+    /// mono frame.) If RENDER or COPY were not complete, these earlier drawings would still use the buffers.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = EyeDrawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
-    /// Returns true if TRANSFORM of an eye may begin.
+    /// Returns true if TRANSFORM of a drawing (the picture of one eye) may begin.
     ///
-    /// All slaves must have finished EDIT of the eye's frame. (TR94 requires only that this EDIT has begun.) RENDER of
-    /// the 2nd previous eye and COPY of the 3rd previous eye must be complete. The rule does not apply to the first eye
-    /// of a frame. Each slave begins the first eye when its own edits are done.
+    /// All slaves must have finished EDIT of the drawing's frame. (TR94 requires only that this EDIT has begun.) RENDER
+    /// of the second previous drawing and COPY of the third previous drawing must be complete. The rule does not apply
+    /// to the first eye of a frame. Each slave begins the first eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
@@ -89,8 +90,8 @@ impl Completed {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
-    /// Returns true if RENDER of an eye may begin. All slaves must have finished TRANSFORM of this eye, and RENDER of
-    /// the previous eye must be complete.
+    /// Returns true if RENDER of a drawing (the picture of one eye) may begin. All slaves must have finished TRANSFORM
+    /// of this drawing, and RENDER of the previous drawing must be complete.
     #[must_use]
     pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
@@ -103,8 +104,8 @@ impl Completed {
         self.swapped >= drawing.frame(self.eyes).0
     }
 
-    /// Returns true if COPY of an eye may begin. The frame buffer must be free, and COPY of the previous eye must be
-    /// complete.
+    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden half of the frame buffer must
+    /// be free, and COPY of the previous drawing must be complete.
     ///
     /// Each frame buffer has its own ring port. Nevertheless, the rule of TR94 permits copies to only one frame buffer
     /// at a time, one eye after the other.

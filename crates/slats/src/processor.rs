@@ -28,7 +28,7 @@ const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host. Only the leading GP stores it.
+    /// The newest view from the host. Only the leading GP stores this view.
     newest: Option<FrameView>,
     /// Fields that the leading GP has begun. Only the other GPs store these fields.
     begun: VecDeque<(PeriodNumber, FrameView)>,
@@ -54,7 +54,8 @@ struct Bottom {
     /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
     /// their copies.
     copiers: usize,
-    /// True from the request to display the field until the chain of copies starts.
+    /// True while the chain of copies is about to start: from the request to display the field until the start of the
+    /// copies.
     is_taken: bool,
 }
 

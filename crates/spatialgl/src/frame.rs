@@ -1,4 +1,4 @@
-//! A finished volume: the bits of all slices, and the counts of drawing them.
+//! A finished volume: the bits of all slices, and counts of the work to draw them.
 
 use crate::pack::pixel_of_word;
 use crate::projection::Size;

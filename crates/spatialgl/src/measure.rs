@@ -26,8 +26,8 @@ impl Connected {
 }
 
 /// Measures how connected the surfaces of a mesh appear on a swept display. Returns `None` if the frame was made
-/// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because the gaps of the
-/// dither would count.
+/// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because gaps that the
+/// dither makes would then count as gaps in surfaces.
 #[must_use]
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;

@@ -12,8 +12,9 @@
 //!   ([`volume_messages`]) in the frame store that is not shown. A map makes those tiles dark that will not be sent. A
 //!   swap request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written
 //!   slice is therefore never shown.
-//! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_wire::display::Display), a period is a
-//!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
+//! - Strobe k of revolution n lights at the time (n + k / N) / f, for f revolutions per second. In terms of
+//!   [`Display`](pxpl5_wire::display::Display), a period is a revolution and a surface is a slice. Each pixel of a
+//!   slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
 //! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel. The sums are
 //!   integers. No voxel hides another voxel.

@@ -68,7 +68,7 @@ pub struct WedgePlanes {
     pub fraction_bits: Option<u32>,
 }
 
-/// The test whether a point is in a wedge, given its distances from the two boundary planes.
+/// The test that decides if a point is in a wedge, given the point's distances from the two boundary planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
@@ -78,7 +78,8 @@ pub enum WedgeTest {
     Shader(TieRule),
     /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances.
+    /// This number of square pixels is added to the product of the distances from both planes before the sign is
+    /// tested.
     Hyperbolic(f64),
 }
 

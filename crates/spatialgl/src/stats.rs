@@ -13,7 +13,7 @@ pub struct VolumeStats {
     pub outside_volume: u64,
     /// Number of slices drawn. If slices are mirrored, more slices are shown than drawn.
     pub slices_rendered: u64,
-    /// Number of times that the recorded commands are replayed for a slice.
+    /// Number of drawing passes per slice, each of which replays the recorded commands.
     pub passes: u64,
     /// Number of samples per pixel of a slice.
     pub samples: u64,

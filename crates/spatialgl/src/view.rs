@@ -93,7 +93,7 @@ pub trait SpatialDisplay: Send + Sync {
     /// Returns true if any slice can show this point of the world.
     fn shows(&self, point: DVec3) -> bool;
 
-    /// Returns true if the slice with index `view` shows this point of the world.
+    /// Returns true if the slice with index `view` (among [`Self::views`]) shows this point of the world.
     fn accepts(&self, view: usize, point: DVec3) -> bool {
         self.views().get(view).is_some_and(|view| view.accepts(point))
     }

@@ -45,8 +45,8 @@ impl PriorityTiming {
         Ok(())
     }
 
-    /// Returns the distance from a border within which warping moves vertices, in metres. If the parameter is 0, this
-    /// is the side of a cell.
+    /// Returns the distance from a border within which warping moves vertices, in metres. If the parameter `falloff_m`
+    /// is 0, the result is the side of a cell.
     #[must_use]
     pub const fn falloff_length_m(&self) -> f64 {
         if self.falloff_m == 0.0 { self.cell_m } else { self.falloff_m }

@@ -96,7 +96,7 @@ fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     (size.x.ceil() + 1.0) * (size.z.ceil() + 1.0)
 }
 
-/// The axis perpendicular to a plane of cuts.
+/// The axis perpendicular to the planes at which a mesh is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Axis {
     X,

@@ -50,8 +50,8 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// Creates the warp from two eye positions: one of the memory's own drawing, the other of its slower neighbour's
-    /// drawing.
+    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
+    /// `slower_from` the eye position from which the next slower memory was drawn.
     ///
     /// # Errors
     ///
@@ -66,8 +66,8 @@ impl RegionWarp {
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
     /// slower memory, or `None` if there is no slower memory.
     ///
-    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same as from the
-    /// eye position of the slower memory's drawing.
+    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
+    /// memories.
     #[must_use]
     pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
         to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))

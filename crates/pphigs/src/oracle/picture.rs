@@ -24,7 +24,7 @@ pub struct Tie<'a> {
     pub x: u32,
     /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Red, green and blue of each of these primitives, in the order of the display list.
+    /// Red, green and blue of each primitive with this smallest depth, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 

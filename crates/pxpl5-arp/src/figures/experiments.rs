@@ -16,8 +16,8 @@ use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Thresho
 use glam::{DMat3, DQuat, DVec3};
 use tracking::motion::Walk;
 
-/// Number of frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800
-/// frames.
+/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
+/// for at least 1,800 frames.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
 /// Settings and results of one simulated walk of the viewer.
@@ -68,8 +68,8 @@ pub struct Experiments {
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
-    /// Factors by which priority rendering reduces draws of point objects: 4 memories at 1 m/s, and 5 memories at 0.37
-    /// m/s.
+    /// Factors by which priority rendering reduces the number of draws of point objects: with 4 memories at 1 m/s, and
+    /// with 5 memories at 0.37 m/s.
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
@@ -203,13 +203,16 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
 /// and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
-    /// Name of the angle that is allowed to change: of the diameter or of the radius.
+    /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
+    /// radius covers.
     pub angle: &'static str,
-    /// Allowed change of the radius' angle, divided by the threshold of translation.
+    /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
     pub factor: f64,
-    /// Limit of the ratio of the diameter to the distance of the sphere's middle.
+    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation still decides the
+    /// validity.
     pub of_middle: f64,
-    /// Limit of the ratio of the diameter to the distance of the sphere's nearest point.
+    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation still decides
+    /// the validity.
     pub of_nearest: f64,
 }
 

@@ -91,7 +91,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors of the update rates of the given memories, in percent.
+    /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
+    /// compared with table 1.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -260,9 +261,9 @@ const TEXEL_DEG: f64 = 90.0 / 512.0;
 /// threshold and cell side is fixed, because it fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
-    /// The threshold as text, in pixels of the display or texels of an ideal face.
+    /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The threshold in degrees.
+    /// The threshold of the image error in degrees.
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,

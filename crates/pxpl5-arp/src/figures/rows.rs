@@ -37,8 +37,8 @@ fn composition(all: &Experiments) -> Vec<Row> {
     vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Provenance::Checked)]
 }
 
-/// Compares the paper's statement A8, "about ten times the distance", with the limits for spheres, measured to their
-/// nearest point.
+/// Compares the paper's statement A8 ("about ten times the distance") with the limits of size for spheres. The distance
+/// of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<Row> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];

@@ -58,8 +58,8 @@ fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     edges
 }
 
-/// Returns true if both coordinates lie exactly on the same border of cells. Cuts compute coordinates so that this
-/// comparison is exact.
+/// Returns true if both coordinates lie exactly on the same border of cells. The test needs no tolerance, because cuts
+/// set coordinates exactly to a border.
 fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     let border = (p / side_m).round() * side_m;
     p == border && q == border

@@ -32,9 +32,9 @@ struct Ring {
     points: u32,
 }
 
-/// Returns the number of points on each parallel of a sphere with `count` triangles. Each point of a parallel has one
-/// side of a triangle below the parallel and one of a triangle above. The parallels between the poles therefore have
-/// `count` / 2 points in total. Each parallel gets points in proportion to its length.
+/// Returns the number of points on each parallel of a sphere with `count` triangles. A parallel with n points is
+/// divided into n edges. Each edge belongs to one triangle above the parallel and one triangle below. The parallels
+/// between the poles therefore have `count` / 2 points in total. Each parallel gets points in proportion to its length.
 fn rings(count: u32) -> Vec<u32> {
     // An equilateral triangle with side s has the area s^2 sqrt(3)/4, and rows of such triangles are s sqrt(3)/2 apart.
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();

@@ -100,7 +100,8 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Reads all meshes of the default scene.
     ///
-    /// The first scene replaces a missing default scene. A file without scenes gives all nodes that have no parent.
+    /// If the file names no default scene, the first scene is read. If the file has no scenes, all nodes without a
+    /// parent are read.
     fn scene(&mut self) -> Result<(), LoadError> {
         let Document { source, root, .. } = self.document;
         let number = root.scene.map_or(0, |scene| scene.value());

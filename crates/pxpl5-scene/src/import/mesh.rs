@@ -104,7 +104,7 @@ pub(super) fn still_at_origin() -> HeadMotion {
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }
 
-/// Makes a scene of a model with one structure and a head motion.
+/// Makes a scene from the vertices, triangles and spheres of a model and a head motion. The scene has one structure.
 pub(super) fn seen_by(
     motion: HeadMotion,
     name: &str,

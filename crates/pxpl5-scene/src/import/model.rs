@@ -13,7 +13,8 @@ use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
-/// Positions of points, in single precision if this is exact and otherwise in double precision.
+/// Positions of points. The positions are in single precision if this precision is exact for the file, and otherwise in
+/// double precision.
 pub(super) enum Places {
     Single(Vec<Vec3>),
     Double(Vec<DVec3>),
@@ -76,11 +77,11 @@ impl Places {
 /// because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`], which distinguishes vertices at one point.
+/// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// The index of a normal, counted from 1. For a corner without a normal it is the smoothing group of the face: 0,
-    /// or a number from 2^31 on.
+    /// The index of a normal, counted from 1. For a corner without a normal, the number is the smoothing group of the
+    /// face: 0, or a number from 2^31 on.
     Normal,
     /// The colour of a face: red, green and blue, packed with red in the lowest byte.
     Colour,
@@ -132,7 +133,8 @@ pub(super) struct Model {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
-    /// Number of bytes of other files that belong to the model. These bytes count as part of the model's file.
+    /// Number of bytes of other files that belong to the model, for example glTF buffers beside the model's file. These
+    /// bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
@@ -286,7 +288,7 @@ impl Model {
         vertices
     }
 
-    /// Returns the number of the group of vertices that share one mean normal with this vertex. Faces of different
+    /// Returns the index of this vertex's group. All vertices of a group share one mean normal. Faces of different
     /// colours share groups at their common points. Faces of different smoothing groups share no group.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }

@@ -64,7 +64,8 @@ struct Rows<'a> {
     /// Line number of the next line of an ASCII file.
     line: u64,
     text: &'a str,
-    /// Greatest allowed length of a list. Valid faces and strips with this number of vertices need no longer lists.
+    /// Greatest allowed length of a list, computed from the number of vertices in the file. No valid face or strip of
+    /// these vertices needs a longer list.
     longest_list: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
@@ -79,8 +80,8 @@ struct Rows<'a> {
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// If a header has no end, the reader searches this number of bytes at the start of the file for the error. Assumed: a
-/// few lines or more.
+/// Number of bytes at the start of the file that the reader searches for the error if the header has no end. Assumed:
+/// at least a few lines.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes

@@ -1,4 +1,4 @@
-//! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
 use pxpl5_sim::parameters::Provenance;
@@ -20,7 +20,7 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 /// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures that need single slices.
+/// Returns all figures of the paper that are measured on single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
@@ -102,8 +102,9 @@ fn percent(total: usize, agreeing: usize) -> f64 {
     100.0 * agreeing as f64 / total as f64
 }
 
-/// Returns figures P3 and P4. P3 compares the codes of bins. P4 compares the printed product with the clip, for the
-/// normals of figure 5 left and right.
+/// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the printed rule. P4 is
+/// the percentage of grid points at which the clip agrees with the printed sign of the product of distances. There are
+/// two rows for P4, with the normals of the left and of the right part of the paper's figure 5.
 fn signs() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;

@@ -100,8 +100,8 @@ impl FigureRow {
     }
 }
 
-/// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then figures without
-/// a number.
+/// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then identifiers
+/// without a number.
 pub(super) fn order(id: &str) -> (u8, u32) {
     let number = id.get(1..).and_then(|digits| digits.parse().ok());
     match (id.chars().next(), number) {

@@ -64,7 +64,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
 }
 
 /// Measures the radius around the axis within which no point is accepted if planes have few fraction bits. The derived
-/// radius is 2^-(bits + 1) / S.
+/// radius is 2^-(bits + 1) / S, where S is the sine of half the angle between slices.
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);

@@ -7,8 +7,9 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, SUBPIXEL_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use spatialgl::{ClipQuadratic, HalfWedge, Size};
 
-/// Number of fraction bits in the hyperbola's coefficients. With the usual 16 bits, S^2 would be only 4 units. With 26
-/// bits, S^2 is 4,224 units, and values inside a display of 768 px fit into 48 bits (derived).
+/// Number of fraction bits in the hyperbola's coefficients. A coefficient contains the term S^2, where S is the sine of
+/// half the angle between slices. With the usual 16 bits, S^2 would be only 4 units. With 26 bits, S^2 is 4,224 units,
+/// and values inside a display of 768 px fit into 48 bits (derived).
 pub const CLIP_FRACTION_BITS: u32 = 26;
 
 /// A corner of a triangle, with its position rounded to the sub-pixel grid of the machine.

@@ -362,7 +362,7 @@ impl<'a> Machine<'a> {
         let slice = pixels.target.picture.0 as usize;
         let region = usize::from(pixels.target.region.0);
         let tiles: Vec<Arc<[Word]>> = self.traffic.slices[slice].tiles[region].clone();
-        // The last tile has the ticket, so the renderer learns when its region has left.
+        // The last tile has the ticket, which notifies the renderer that its region has left.
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
             let body = Body::Words(words);

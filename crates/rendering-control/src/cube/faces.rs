@@ -32,8 +32,8 @@ fn to_face(face: CubeFace) -> Mat4 {
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update for one slave. The bin of each region on the six faces has the slave's primitives that touch the
-/// region.
+/// Bins of an update (new content of one display memory) for one slave. The bin of each region on the six faces has the
+/// slave's primitives that touch the region.
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,

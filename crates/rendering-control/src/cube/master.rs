@@ -9,7 +9,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
-/// State of a renderer, from the messages that the master has received.
+/// State of a renderer, as it follows from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -34,7 +34,7 @@ struct UpdateProgress {
     entries: Vec<u64>,
     /// True if the regions that will arrive have been announced to the display memory.
     announced: bool,
-    /// Number of regions that have not arrived in the display memory. `None` before RENDER begins.
+    /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
 }
 
@@ -76,7 +76,7 @@ struct CubeMaster {
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
     next_slave: usize,
-    /// Number of swaps of all memories at the master's last check.
+    /// Number of buffer swaps of all display memories together at the master's last check.
     swaps_known: u64,
 }
 

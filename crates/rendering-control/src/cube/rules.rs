@@ -4,7 +4,7 @@
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of updates that have passed each stage. Every stage processes updates in order.
+/// For each stage, the number of updates that have passed the stage. Every stage processes updates in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Completed {
     pub(crate) sent: u64,

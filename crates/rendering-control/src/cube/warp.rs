@@ -8,7 +8,7 @@ use pxpl5_wire::Word;
 /// another eye position. Without the displacement, the two images would not meet at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
-    /// Assignment of cells (squares of the floor) to memories.
+    /// Assignment of cells (squares of the floor) to display memories.
     pub dealing: CellAssignment,
     /// Shape of the falloff: how the displacement decreases with the distance from the border to the slower memory.
     pub falloff: Falloff,

@@ -74,7 +74,7 @@ impl SweptConfig {
         f64::from(self.width) / 2.0
     }
 
-    /// Returns half of the wedge between two slices of this display.
+    /// Returns half of the wedge (part of space) that one slice of this display represents.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())

@@ -35,8 +35,8 @@ pub struct Figure {
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
-    /// Printed or derived value. If the paper says "over" or "about", the value is the middle or the end of the
-    /// interval.
+    /// Printed or derived value. If the paper prints only a bound or an approximate value ("over", "about"), the value
+    /// is an end or the middle of `interval`.
     pub published: f64,
     /// Least and greatest computed value that count as agreement with the figure.
     pub interval: [f64; 2],

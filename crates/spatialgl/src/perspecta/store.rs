@@ -19,7 +19,7 @@ pub(crate) struct FrameStore {
     size: Size,
     volumes: [Vec<Slice>; 2],
     shown: usize,
-    /// Slices of the store that was visible until the last tick.
+    /// Slices of the store that was visible until the last strobe 0 (the first flash of a revolution).
     scanned: Vec<Slice>,
     /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
@@ -131,7 +131,8 @@ impl FrameStore {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// Returns the words of a slice of the store that was visible until the last tick.
+    /// Returns the words of a slice of the store that was visible until the last strobe 0, the first flash of a
+    /// revolution.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

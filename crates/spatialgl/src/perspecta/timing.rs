@@ -50,8 +50,9 @@ impl PerspectaConfig {
         Clock::new(60_000_000_000_000, self.spin_rpm).expect("at most a million revolutions a minute")
     }
 
-    /// Returns the instant at which strobe (flash) `slice` of a revolution begins, and the duration of the strobe. The
-    /// instant is (n + k / N) / f. The duration is `lit_percent` of the interval between strobes.
+    /// Returns the instant at which strobe (flash) `slice` of a revolution begins, and the duration of the strobe. For
+    /// strobe k of N in revolution n, the instant is (n + k / N) / f, where f is the number of revolutions per second.
+    /// The duration is `lit_percent` of the interval between strobes.
     #[must_use]
     pub fn strobe(&self, revolution: u64, slice: u64) -> (Time, Span) {
         let begin = self.instant(revolution, slice);
