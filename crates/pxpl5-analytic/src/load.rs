@@ -20,7 +20,7 @@ pub struct Load {
     pub clipped: f64,
     /// Number of structures in the display list.
     pub structures: f64,
-    /// Number of structures that contain spheres.
+    /// Number of structures of the display list that contain spheres.
     pub sphere_views: f64,
     /// For each region, the number of triangles and the number of spheres in its bin.
     pub bins: Vec<[f64; 2]>,

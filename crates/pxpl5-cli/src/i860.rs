@@ -114,7 +114,7 @@ impl Warnings {
 ///
 /// # Errors
 ///
-/// Returns the message to print before a non-zero exit.
+/// Returns the message that the command prints before it ends with an exit code above 0.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),

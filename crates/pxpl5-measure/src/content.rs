@@ -127,7 +127,7 @@ impl Body {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
 
-    /// Returns the smallest depth at which a ray hits the structure between two depths.
+    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure.
     fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
         let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
         let of_triangles =

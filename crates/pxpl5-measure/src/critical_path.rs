@@ -47,7 +47,7 @@ pub struct CriticalPath {
 /// Largest number of pictures that are followed. Even a long run still has all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
-/// Largest number of links of a chain that are printed.
+/// Largest number of waits of a chain that are printed.
 const LINKS_PRINTED: usize = 16;
 
 impl CriticalPath {
@@ -97,7 +97,7 @@ impl CriticalPath {
     }
 }
 
-/// Sums the steps of all chains that wait for one resource. Returns `None` if no step waits for the resource.
+/// Sums the waits for one resource over all chains. Returns `None` if no chain contains a wait for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -138,7 +138,7 @@ impl fmt::Display for PathPart {
     }
 }
 
-/// Joins consecutive steps with the same resource and board. Returns the first links as text.
+/// Joins consecutive waits for the same resource and board. Returns the first [`LINKS_PRINTED`] joined waits as text.
 fn links_text(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;

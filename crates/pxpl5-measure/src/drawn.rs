@@ -16,7 +16,7 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two moments give the same picture.
+    /// Returns true if views drawn for two moments are the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
@@ -34,8 +34,8 @@ pub(crate) enum Drawn {
     },
     /// A picture that the display shifts while scanning it out (raster offset).
     AdvancedMotion(Moment, DVec2),
-    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest scene point in all
-    /// display memories is visible.
+    /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
+    /// point in all display memories is visible.
     Faces(FacesSeen),
 }
 
