@@ -17,9 +17,9 @@ pub struct FacesReport {
     pub latch: Latch,
     /// Time from the latching of an orientation until the first pixel that uses it is lit, in nanoseconds.
     pub pipeline_ns: f64,
-    /// Number of orientations that the display accepted.
+    /// Number of head orientations that the display accepted.
     pub matrix_loads: u64,
-    /// Number of orientations that the display refused.
+    /// Number of head orientations that the display refused.
     pub matrix_refused: u64,
     /// The display memories, starting with the memory that is drawn most often.
     pub memories: Vec<MemoryReport>,
@@ -47,14 +47,16 @@ pub struct MemoryReport {
     pub missed: u64,
     /// Latency from a translation of the head until the middle of the picture is lit, in milliseconds, over all fields.
     ///
-    /// The latency starts at the measurement of the head. Without a tracker the latency starts when the memory becomes
-    /// due. `None` before the first update, and in a run that discarded its records without a streaming observer.
+    /// The latency starts at the measurement of the head's pose. Without a tracker the latency starts when the memory
+    /// must be redrawn (becomes due). `None` before the first update, and in a run that discarded its records without a
+    /// streaming observer.
     pub translation_latency_ms: Option<Statistics>,
     /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
     /// The parts are: measurement until the memory became due, due until shown, age of the shown update, and scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
-    /// Total delay of late updates in milliseconds, each from the first missed retrace to the retrace that showed it.
+    /// Total delay of late updates in milliseconds. The delay of an update lasts from the first missed retrace to the
+    /// retrace that showed the update.
     pub lateness_ms: f64,
     /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,

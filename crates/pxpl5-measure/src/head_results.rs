@@ -1,4 +1,5 @@
-//! Results that concern the head: from the streaming observer, or else computed from the records still in memory.
+//! Results that concern the head. They come from the streaming observer, or else from the records of the run that are
+//! still in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_observer::ErrorSum;
@@ -70,8 +71,8 @@ impl EyeReport {
     }
 }
 
-/// Returns the pixel errors in the display mode of the head's display, and the results of the eye. Returns `None` for a
-/// run without a head.
+/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if there is one. Returns
+/// `None` for a run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
@@ -96,7 +97,8 @@ impl Budget {
         sum.result()
     }
 
-    /// Returns the latency of each picture in memory, from the measured pose until the middle is lit, in milliseconds.
+    /// Returns the latency of each picture whose records are in memory, from the measurement of the pose until the
+    /// middle of the picture is lit, in milliseconds.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();
@@ -118,7 +120,7 @@ impl Turns {
 }
 
 impl Steps {
-    /// Returns the latencies of a step of the head, for each display memory of a run.
+    /// Returns the latencies from a step (translation) of the head until the content of each display memory is lit.
     ///
     /// The result is empty if the run discarded its records without a streaming observer.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {

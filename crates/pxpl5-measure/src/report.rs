@@ -69,9 +69,9 @@ pub struct Report {
     pub window: Option<ResultWindow>,
     /// Number of complete pictures in the result window. The statistics are computed over these pictures.
     pub pictures: usize,
-    /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
+    /// Latency of the pictures in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
-    /// The same latency in milliseconds of simulated time.
+    /// Latency of the pictures in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
     /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
     /// is lit.
@@ -86,7 +86,8 @@ pub struct Report {
     /// Number of complete new pictures per second within the result window. `None` if fewer than two pictures were
     /// shown.
     pub updates_hz: Option<f64>,
-    /// Number of pictures due in the result window, by result. `None` if no picture was due.
+    /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
+    /// `None` if no picture was due.
     pub due: Option<DuePictures>,
     /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
     /// count.
@@ -103,7 +104,7 @@ pub struct Report {
     pub first_late_regions: Vec<LateRegion>,
     /// Counters of the first display since the start of the run.
     pub display_counters: Vec<Counter>,
-    /// Results that concern the head. `None` for a run without a tracker.
+    /// Results that concern the head: prediction, latency and pixel errors. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
     /// Smear, and results of a device that moves pictures.
@@ -114,7 +115,8 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. A display with faces around the head has its own optics instead.
+    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head uses other optics
+    /// instead, which belong to its own settings.
     pub hmd: HmdConfig,
     /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,

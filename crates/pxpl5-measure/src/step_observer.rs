@@ -5,10 +5,11 @@ use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// Names of the parts of the latency of a step, in the order of time.
+/// Names of the parts of the latency after a step (translation) of the head, in the order of time.
 const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
-/// A streaming observer of the latencies of a step of the head.
+/// A streaming observer of the latencies from a step (translation) of the head until the content of each display memory
+/// is lit.
 ///
 /// The observer adds one latency for each memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
@@ -20,7 +21,8 @@ pub(crate) struct StepSum {
 /// Latencies of the content of one display memory, in milliseconds.
 #[derive(Debug, Default)]
 struct OfMemory {
-    /// The period that first shows the newest update, and the instant at which the update's latency begins.
+    /// The display period that first shows the memory's newest update, and the instant at which the latency of this
+    /// update begins.
     begin: Option<(PeriodNumber, Time)>,
     total: Samples,
     parts: [f64; PARTS.len()],
@@ -29,7 +31,8 @@ struct OfMemory {
 /// Latencies from a step (translation) of the head until the content of one display memory is lit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
-    /// Latency over all periods since the first update, in milliseconds. `None` before the first update.
+    /// Latency over all display periods since the memory's first update, in milliseconds. `None` before the first
+    /// update.
     pub(crate) latency_ms: Option<Statistics>,
     /// Means of the parts of the latency, in milliseconds.
     pub(crate) parts_ms: Vec<(&'static str, f64)>,
@@ -63,7 +66,7 @@ impl StepSum {
 }
 
 impl OfMemory {
-    /// Adds the latency of the memory's content at the middle of a field.
+    /// Adds the latency of a display memory's content to the results, measured when the middle of a field is lit.
     fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
         // The measurement is looked up once for each update, because a long run may discard the view of an update that

@@ -38,8 +38,8 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Returns the shares of `time` that the spans take, one span for each board. Returns `None` without boards or
-    /// time.
+    /// Returns the shares of `time` for which boards were busy, from the busy span of each board. Returns `None`
+    /// without boards or time.
     #[must_use]
     pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
         let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();
@@ -91,9 +91,9 @@ pub struct RingUtilisation {
 /// Shares of time for which the ring ports of displays were busy, 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortUtilisation {
-    /// Statistics over all ports.
+    /// Mean and maximum of the busy shares over all ports.
     pub busy: Shares,
-    /// Share of each port.
+    /// Share of time for which each port was busy.
     pub each: Vec<PortShare>,
 }
 
@@ -107,22 +107,22 @@ pub struct PortShare {
 }
 
 impl Utilisation {
-    /// Returns the shares of a finished run. Returns `None` for a machine that has not run.
+    /// Returns the busy shares of the boards over a finished run. Returns `None` for a machine that has not run.
     #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
         Self::until(record, record.elapsed(), record.processors_used())
     }
 
-    /// Returns the shares of a run up to now. Returns `None` at time zero.
+    /// Returns the busy shares of the boards from the start of a run up to now. Returns `None` at time zero.
     ///
-    /// A message on the ring counts when it ends.
+    /// The time of a message on the ring is added when the message ends.
     #[must_use]
     pub fn so_far(run: &Stepper) -> Option<Self> {
         Self::until(run.record(), run.now(), &run.machine().processors_used(run.now()))
     }
 
-    /// Returns the shares from the start of the machine to an instant. `used` is the CPU time of the host and of each
-    /// graphics processor up to this instant.
+    /// Returns the busy shares of the boards from the start of the machine to an instant. `used` is the CPU time of the
+    /// host and of each graphics processor up to this instant.
     fn until(record: &Record, time: Time, used: &[GpUse]) -> Option<Self> {
         let (host, gps) = used.split_first()?;
         let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);
