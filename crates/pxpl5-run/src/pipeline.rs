@@ -55,7 +55,7 @@ pub struct Setup {
     /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
     /// ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
-    /// Record of the updates that a pipeline with cube faces has requested.
+    /// Record of the updates of display memories that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
@@ -101,7 +101,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine: how it draws. [`PictureRules`] states what its pictures are.
+/// A program for a whole machine, which defines how the machine draws. [`PictureRules`] defines the times and contents
+/// of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
@@ -226,8 +227,8 @@ pub trait PictureRules {
         1.0
     }
 
-    /// Returns the index of the copy to which an arrival belongs: 0, or 1 for the second copy. Each copy is timed
-    /// separately.
+    /// Returns the index of the copy (stage COPY) to which the arrival of a region belongs: 0, or 1 for the second
+    /// copy. Each copy is timed separately.
     fn copy_part(&self, _arrival: &Arrival) -> u8 {
         0
     }

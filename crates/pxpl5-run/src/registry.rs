@@ -37,10 +37,10 @@ pub enum TestScene {
 }
 
 impl TestScene {
-    /// All kinds of triangles, starting with the largest.
+    /// All kinds of triangles in test scenes, starting with the largest triangles.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
-    /// Returns the name on the command line and in tables.
+    /// Returns the name of the kind of triangles on the command line and in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -116,8 +116,8 @@ impl fmt::Display for PipelineEntry {
 impl FromStr for PipelineEntry {
     type Err = NameError;
 
-    /// Returns the entry of a built-in pipeline, without an analytic model. [`Registry::pipeline`] also finds other
-    /// pipelines.
+    /// Returns the registry entry of a built-in pipeline, without its closed form. [`Registry::pipeline`] also finds
+    /// other pipelines.
     fn from_str(name: &str) -> Result<Self, NameError> {
         Registry::of_papers().pipeline(name).copied()
     }
@@ -132,7 +132,7 @@ impl fmt::Display for DisplayEntry {
 impl FromStr for DisplayEntry {
     type Err = NameError;
 
-    /// Returns the entry of a built-in display. [`Registry::display`] also finds other displays.
+    /// Returns the registry entry of a built-in display. [`Registry::display`] also finds other displays.
     fn from_str(name: &str) -> Result<Self, NameError> {
         Registry::of_papers().display(name).copied()
     }

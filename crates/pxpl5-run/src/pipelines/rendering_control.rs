@@ -42,7 +42,8 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions. The first action is the default.
+    /// All actions of a renderer with a finished region whose frame buffer is not available. The first action is the
+    /// default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.

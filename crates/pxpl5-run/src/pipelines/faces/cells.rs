@@ -13,9 +13,10 @@ use std::sync::Arc;
 /// Region priority rendering: assigns each structure to the fastest memory of any of its cells. A structure that moves
 /// by itself is in memory 0.
 ///
-/// All memories of a cycle are drawn from one position of the eye, because warping needs the exact positions. With
-/// warping, all memories of a cycle swap together. A memory that swapped before its neighbour would be warped for a
-/// position that is not displayed.
+/// In each cycle, the policy redraws the memories that are due. All memories of a cycle are drawn from one position of
+/// the eye, because warping needs the exact positions. With warping, all memories of a cycle swap together. Otherwise,
+/// a memory that swapped before its neighbour would be warped for an eye position that the neighbour does not display
+/// yet.
 pub(super) struct ByCells {
     policy: Cells,
     cells: Arc<[Vec<Cell>]>,
@@ -62,7 +63,7 @@ impl ByCells {
         })
     }
 
-    /// Returns the memories to draw now. A memory that was empty and remains empty is left out.
+    /// Returns the display memories to draw in this cycle. A memory that was empty and remains empty is left out.
     fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
         let mut drawn = Vec::new();
         for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {

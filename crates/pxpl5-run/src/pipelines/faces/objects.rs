@@ -60,8 +60,8 @@ impl ByObjects {
         }
     }
 
-    /// Returns the time, in seconds, for which the image of a structure stays correct. The time is 0 for a structure
-    /// that moves by itself.
+    /// Returns the time, in seconds, for which the image of a structure stays correct while the eye moves. The time is
+    /// 0 for a structure that moves by itself.
     fn period_s(&self, moves: bool, structure: usize, eye: DVec3, speed: f64) -> f64 {
         let ObjectSphere { centre, radius_m } = self.spheres[structure];
         let animation_s = if moves { 0.0 } else { f64::INFINITY };

@@ -162,7 +162,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// Returns the plan by which the host selects the next update of a display memory.
+    /// Returns the plan (a function) by which the host selects the next update of a display memory.
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
 
-/// State that all plans share: views, starts of frames, and the record of updates.
+/// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
@@ -32,7 +32,7 @@ impl Updates {
         Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
     }
 
-    /// Returns the view of an update that is sent now.
+    /// Returns the newest view of the head for an update that the host sends now.
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }

@@ -29,7 +29,8 @@ pub struct RequestedUpdates(Arc<Mutex<Held>>);
 struct Held {
     /// Number of updates that were requested so far, by memory.
     asked: BTreeMap<usize, u64>,
-    /// Updates in memory, in order. Each has the number of earlier updates of the same display memory.
+    /// Updates that were not discarded, in order. Each entry begins with the number of earlier updates of the same
+    /// display memory.
     notes: Vec<(u64, RequestedUpdate)>,
 }
 
