@@ -84,8 +84,8 @@ impl Tables {
     }
 }
 
-/// Tables of fixed facts with their names: head speeds, the pendulum rig that measures latency, NTSC video, and the
-/// picture size of the head-mounted display. An experiment cannot change these numbers.
+/// Tables of numbers that an experiment cannot change, with the names of the tables. The tables have head speeds, the
+/// pendulum rig that measures latency, NTSC video, and the picture size of the head-mounted display.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -98,13 +98,14 @@ parameter_table! {
     pub struct Fastrak {
         /// Measurement rate of the Fastrak, shared by all receivers.
         rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
-        /// Time from the Fastrak's sync signal to the first character on its line.
+        /// Time from the Fastrak's sync signal to the first character on the serial cable.
         sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
-        /// Effective latency of the Fastrak, from the middle of the measurement to the first character.
+        /// Effective latency of the Fastrak, from the middle of the measurement to the first character on the serial
+        /// cable.
         latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
         /// Length of an ASCII record of the Fastrak.
         record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
-        /// Serial line rate of the Fastrak.
+        /// Rate of the Fastrak's serial cable.
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
         /// Gain a of the Fastrak's low-pass filter, which replaces its output x' by a x + (1 - a) x' at each
         /// measurement x. The filter adds a delay of dt (1 - a) / a, where dt is the time between measurements. A gain
@@ -203,9 +204,9 @@ parameter_table! {
 parameter_table! {
     /// The host's serial port, through which a report reaches the program.
     pub struct HostPort {
-        /// Bits on the serial line for each byte: start bit, 8 data bits, stop bit.
+        /// Bits on the serial cable for each byte: start bit, 8 data bits, stop bit.
         byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
-        /// Interval at which the host's kernel polls the serial line.
+        /// Interval at which the host's kernel polls the serial port.
         poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }
@@ -306,13 +307,14 @@ parameter_table! {
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
         /// Fastest turn of the head that a predictor accepts. A report that implies a faster turn is rejected.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
-        /// Distance between two successive reported positions that noise alone can cause. The test of the speed ignores
-        /// this distance.
+        /// Distance between two successive reported positions that noise alone can cause. This distance is subtracted
+        /// before the speed is compared with the limit `speed`.
         distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Angle between two successive reported orientations that noise alone can cause. The test of the turn ignores
-        /// this angle.
+        /// Angle between two successive reported orientations that noise alone can cause. This angle is subtracted
+        /// before the turn is compared with the limit `turn`.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Number of successive rejected jumps after which a predictor accepts the new position.
+        /// Number of successive reports, rejected because of a jump of the pose, after which a predictor accepts the
+        /// new pose.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
         /// Time without reports after which a filter restarts with unknown velocities.
         gap: f64 = 250.0, "ms", Assumed, 10.0..=10000.0, "30 reports at 120 Hz; longer than any planned prediction";
