@@ -212,7 +212,7 @@ struct Sender<'a> {
     /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Time at which the last message of the current clump was accepted.
+    /// Time at which the last message of the current clump (group of primitives) was accepted.
     accepted_ns: f64,
     /// Time by which every renderer has accepted its first message of the current clump.
     draining_ns: f64,

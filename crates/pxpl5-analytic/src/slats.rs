@@ -247,8 +247,8 @@ mod tests {
     }
 
     proptest! {
-        /// Results must be bit-identical to those of single machines, for any number of machines, even with different
-        /// structures.
+        /// Checks that the times are bit-identical to the times of single machines, for any number of machines and for
+        /// different [`SlatsModel::structure`] values.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

@@ -70,7 +70,8 @@ impl BudgetArgs {
     }
 
     /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
-    /// time is the sum divided by `threads`. The estimated memory is the memory of the largest run times `threads`.
+    /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
+    /// run times `threads`.
     ///
     /// # Errors
     ///

@@ -64,7 +64,8 @@ impl Contents {
 
     /// Returns the nearest point that a ray from the eye hits, with moving objects placed for the time `objects_at`.
     ///
-    /// `direction` covers 1 m of depth. Returns `None` if the ray hits nothing between the near and the far plane.
+    /// `direction` is scaled to a depth of 1 m along the axis of the view. Returns `None` if the ray hits nothing
+    /// between the near and the far plane.
     pub(crate) fn met(&self, origin: DVec3, direction: DVec3, objects_at: Time) -> Option<Content> {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }

@@ -18,7 +18,7 @@ use std::fmt;
 pub struct PathPart {
     /// The resource that the picture waits for.
     pub resource: Resource,
-    /// Share of the latency, 0 to 1.
+    /// Share of the latency for which the picture waits for the resource, 0 to 1.
     pub share: f64,
     /// Mean waiting time over the followed pictures, in milliseconds.
     pub ms: f64,
@@ -34,11 +34,11 @@ pub struct CriticalPath {
     /// Number of pictures that were followed: the last complete pictures of the result window, at most
     /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
-    /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
+    /// Mean latency of the followed pictures from the start of TRANSFORM to the screen, in milliseconds.
     pub latency_ms: f64,
-    /// The waits for each resource, with the largest share first.
+    /// The waits of the followed pictures for each resource, with the largest share first.
     pub parts: Vec<PathPart>,
-    /// The largest of these waits, as a sentence.
+    /// The wait with the largest share, as a sentence.
     pub limited_by: String,
     /// The waits of the last picture as text, from the screen backwards.
     pub chain: Vec<String>,

@@ -18,7 +18,8 @@ pub struct DepthPicture {
     height: u32,
     /// Depth along the axis of the view in metres, row after row.
     depths: Vec<f32>,
-    /// Smallest and largest depth that is not 0.
+    /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
+    /// field).
     range: (f32, f32),
 }
 

@@ -39,10 +39,10 @@ pub(crate) enum Drawn {
     Faces(FacesSeen),
 }
 
-/// The memories and the direction from which a pixel of an address recalculation display was read.
+/// The display memories and the direction from which a pixel of an address recalculation display was read.
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
-    /// For each memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
+    /// For each display memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
     /// structure of the scene. The flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.

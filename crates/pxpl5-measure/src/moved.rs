@@ -59,7 +59,7 @@ pub(crate) fn moved(
     last
 }
 
-/// Returns the content that moves to a screen position, and its position in the picture.
+/// Returns the content that moves to a screen position, and the position of this content in the picture.
 ///
 /// Returns `None` if no content moves to this position. `reason` then states the reason.
 fn source(

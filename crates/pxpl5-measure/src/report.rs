@@ -24,7 +24,7 @@ use tracking::predict::{PredictorConfig, Training};
 /// All numbers of one experiment, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Name and version of this record's layout.
+    /// Name and version of the layout of this report.
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
@@ -329,7 +329,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// A program requests the invalid buffer 2 of a double-buffered frame buffer, `asks` times.
+    /// Runs a program that requests the invalid buffer 2 of a double-buffered frame buffer `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {

@@ -225,7 +225,7 @@ impl<'a> Trail<'a> {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
 
-    /// Assigns the time of a region's transfer to a display. Returns the work whose end let the transfer begin.
+    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end let the transfer begin.
     fn before_arrival(&self, way: &mut Way, place: usize) -> At {
         let arrival = self.arrivals[place];
         let begin = arrival.begins_at(self.message);
@@ -289,7 +289,8 @@ impl<'a> Trail<'a> {
         At::Arrival(place)
     }
 
-    /// Assigns the time of a region's transfer. Time beyond the minimum for the pixels is a wait for ring channels.
+    /// Assigns the time of a region's transfer to resources. Time beyond the minimum for the pixels is a wait for ring
+    /// channels.
     fn charge_copy(&self, way: &mut Way, arrival: &Arrival, drawn: Option<usize>) {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
@@ -328,7 +329,8 @@ impl<'a> Trail<'a> {
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
 
-    /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
+    /// Assigns the time of a region's commands to resources. Returns the earlier work whose end let these commands
+    /// begin.
     ///
     /// The returned work is the previous region on the same renderer, or the start of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
@@ -416,7 +418,7 @@ impl<'a> Trail<'a> {
         At::Stage(found)
     }
 
-    /// Assigns the time of a stage. Returns the work whose end let the stage begin.
+    /// Assigns the time of a stage to resources. Returns the earlier work whose end let the stage begin.
     fn before_stage(&self, way: &mut Way, place: usize) -> At {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);

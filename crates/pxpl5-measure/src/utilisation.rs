@@ -14,20 +14,20 @@ pub struct Utilisation {
     pub of_ms: f64,
     /// Share of time for which the host's CPU was busy.
     pub host: f64,
-    /// Shares of the graphics processors, including the master.
+    /// Shares of time for which the graphics processors were busy, including the master.
     pub gps: GpUtilisation,
-    /// Shares of the renderers' controllers.
+    /// Shares of time for which the renderers' controllers were busy.
     pub renderers: RendererUtilisation,
-    /// Share of the ring's channels, and the ring's data rate.
+    /// Share of time for which the ring's channels were occupied, and the ring's data rate.
     pub ring: RingUtilisation,
-    /// Shares of the ring ports of displays, in the order of their boards.
+    /// Shares of time for which the ring ports of displays were busy, in the order of the displays.
     pub ports: PortUtilisation,
 }
 
 /// Shares of time for which the boards of one kind were busy, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shares {
-    /// Mean over all boards.
+    /// Mean share over all boards.
     pub mean: f64,
     /// Share of the busiest board.
     pub max: f64,
@@ -69,11 +69,11 @@ pub struct GpUtilisation {
 /// Shares of time of the renderers' controllers, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RendererUtilisation {
-    /// Share of time in which the controller executed commands.
+    /// Share of time in which a renderer's controller executed commands.
     pub executing: Shares,
-    /// Mean share of time in which a copy command held the controller.
+    /// Mean share of time in which a copy command occupied a renderer's controller.
     pub copying: f64,
-    /// Mean share of time in which the controller waited for commands.
+    /// Mean share of time in which a renderer's controller waited for commands.
     pub waiting: f64,
 }
 
@@ -82,9 +82,9 @@ pub struct RendererUtilisation {
 pub struct RingUtilisation {
     /// Share of time in which a channel was occupied, including overhead and stalls.
     pub channels: Shares,
-    /// Number of message words per second, without overhead.
+    /// Number of words per second that the ring carried in messages, without overhead.
     pub words_per_second: f64,
-    /// Number of words per second that all channels could carry.
+    /// Number of words per second that all channels of the ring together could carry.
     pub capacity: f64,
 }
 

@@ -124,8 +124,8 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Adds all views to the results except the newest view, which the next picture may also show. At the end of the
-    /// run, adds the newest view too.
+    /// Adds all views to the results of the dry run except the newest view, which the next picture may also show. At
+    /// the end of the run, adds the newest view too.
     fn end_views(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
@@ -136,9 +136,9 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds a view that no later picture shows to the results: the instant for which the view is drawn, and the
-    /// prediction interval. Firmware that computes the display times of its views needs no such instants. This firmware
-    /// may also show views out of the order of their numbers.
+    /// Adds a view that no later picture shows to the results of the dry run: the instant for which the view is drawn,
+    /// and the prediction interval. Firmware that computes the display times of its views needs no such instants. This
+    /// firmware may also show views out of the order of their numbers.
     fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = results.aim.instant(&shown);
@@ -170,7 +170,8 @@ impl DryRunObserver {
     }
 }
 
-/// Returns the prediction interval of a pixel's orientation, or `None` before the first report.
+/// Returns the prediction interval of the head orientation that a pixel uses. Returns `None` before the first tracker
+/// report.
 fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
     let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
     let measured = head.measured_at(head.report_by(known)?)?;

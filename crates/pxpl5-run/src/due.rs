@@ -18,7 +18,8 @@ use serde::Serialize;
 /// Smallest number of pictures in a result window from which an update rate can be computed.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Numbers of pictures that were due in a window of a run, by result. Each picture has one of four results.
+/// Numbers of pictures that were due in the result window of a run, counted by result. Each picture has one of four
+/// results: shown, late, incomplete or missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First display period of the result window.

@@ -127,10 +127,11 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns a pose from a separate series of reports. The newest report of the series arrives at `known`.
+/// Returns the pose at `at` without the cause [`Cause::Sampling`], from a separate series of tracker reports. The
+/// newest report of the series arrives at `known`.
 ///
-/// The series reports the head's motion with a shift in time. The shift is the age of the run's newest report at
-/// `known`.
+/// The tracker model reports the head's motion with a shift in time. The shift is the age that the run's newest report
+/// has at `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.

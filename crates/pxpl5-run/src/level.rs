@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub enum Level {
     /// Formulas for the times of the stages, without simulated events.
     Analytic,
-    /// One event per message and command list.
+    /// Each message and each list of commands is one simulated event.
     Transaction,
     /// Like [`Level::Transaction`], but clocks come from executed instructions instead of timing tables.
     Cycle,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Results of a run that can no longer change, and that a streaming observer has not received before.
 ///
-/// After a run that keeps everything, one value holds the whole run.
+/// After a run that keeps everything, one value of this type holds all results of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.

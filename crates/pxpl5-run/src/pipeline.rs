@@ -87,7 +87,8 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// Time of the retrace at which the display begins to show the picture.
     ///
-    /// Without a swap, this is the time at which the beam reaches the part of the picture that defines its times.
+    /// Without a swap, this is the time at which the beam reaches a certain part of the picture, which the pipeline
+    /// selects.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,

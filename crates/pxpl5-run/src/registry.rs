@@ -79,7 +79,7 @@ pub struct PipelineEntry {
     pub name: &'static str,
     /// Name of the family. All variants of the pipeline have the same family.
     pub family: &'static str,
-    /// Description in one line, with the publication.
+    /// Description of the pipeline in one line, with the publication.
     pub about: &'static str,
     /// Preset of a machine on which the papers ran the pipeline, or on which the pipeline could have run.
     pub preset: &'static str,

@@ -34,7 +34,7 @@ pub struct Tally {
     /// Latencies in milliseconds, by the pipeline's definition. Usually from the start of TRANSFORM until the picture
     /// is shown.
     pub latency_ms: Samples,
-    /// Samples for each part of [`LATENCY_PARTS`], in the same order.
+    /// Durations of each latency part in milliseconds, in the order of [`LATENCY_PARTS`].
     pub parts_ms: Vec<Samples>,
     /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the result window.
     pub eye_ms: Samples,
@@ -87,7 +87,7 @@ pub struct SurfaceLatency<'a> {
     pub until: &'static str,
     /// Description of the event that ends the latency.
     pub event: &'static str,
-    /// Latencies in milliseconds.
+    /// Latencies from the start of TRANSFORM on the first surface to the event, in milliseconds.
     pub ms: &'a Samples,
 }
 

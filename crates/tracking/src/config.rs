@@ -54,7 +54,7 @@ impl Tables {
         gate: Gate::PAPERS,
     };
 
-    /// Returns every table with its name.
+    /// Returns every parameter table with the name of the table.
     pub fn all(&self) -> [(&'static str, &dyn ParameterTable); 8] {
         [
             ("fastrak", &self.fastrak),

@@ -57,7 +57,7 @@ pub struct Training {
 /// A tuned predictor, with the conditions of the tuning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// Settings of the predictor with the tuned numbers.
+    /// Settings of the predictor, which include the tuned parameters.
     pub config: PredictorConfig,
     /// Conditions of the tuning, or `None` if the predictor has nothing to tune or no report could be evaluated.
     pub training: Option<Training>,

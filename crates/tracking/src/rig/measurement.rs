@@ -208,8 +208,8 @@ impl Oscilloscope {
     }
 
     /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
-    /// lies before this step. After this step, the screen steps to the same level. Returns `None` if the screen lacks
-    /// one of these steps.
+    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
+    /// `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

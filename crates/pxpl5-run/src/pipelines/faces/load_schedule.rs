@@ -67,8 +67,8 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the register. This instant is at most one pixel's time before
-    /// the first pixel that uses the orientation is latched.
+    /// Returns the instant at which an orientation is in the display's register. The display latches the orientation
+    /// for its first pixel at most one pixel's time later.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))

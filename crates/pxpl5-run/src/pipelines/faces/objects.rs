@@ -1,4 +1,4 @@
-//! Policy `objects`: each structure is in the slowest memory in which its image stays correct.
+//! Policy `objects`: each structure is in the slowest display memory in which its image stays correct.
 
 use super::plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
@@ -9,7 +9,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects: assigns each structure to the slowest memory in which its image stays correct.
+/// Priority rendering by objects: assigns each structure to the slowest display memory in which its image stays
+/// correct.
 pub(super) struct ByObjects {
     scan: Scan,
     policy: Objects,
