@@ -1,4 +1,4 @@
-//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations at once.
+//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations together.
 
 use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};

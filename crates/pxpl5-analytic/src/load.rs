@@ -27,7 +27,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// Returns the load of one structure. Its triangles touch every region and are never clipped.
+    /// Returns the load of one structure whose triangles touch every region and are never clipped.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);

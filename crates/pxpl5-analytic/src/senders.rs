@@ -47,8 +47,8 @@ pub(super) struct Clumps {
     view_words: f64,
 }
 
-/// Number of words of a message with the view of two eyes without edits: the number of the view, two counts, and three
-/// matrices for each eye.
+/// Number of words of a message with the view of two eyes without edits. The message has the number of the view, two
+/// counts, and three matrices for each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -357,8 +357,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns two times for a sender's next message: the time at which the ring can grant channels to the message, and
-    /// the time since which the message has waited.
+    /// Returns two times for a sender's next message. At the first time, the ring can grant channels to the message.
+    /// The message has waited since the second time.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];

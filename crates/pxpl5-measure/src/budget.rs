@@ -122,7 +122,7 @@ impl BudgetSum {
         }
     }
 
-    /// Returns the mean of each stage.
+    /// Returns the mean time of each latency stage.
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
@@ -147,7 +147,8 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
-/// Returns the durations of a picture's stages from the measured pose until the picture is lit, in milliseconds.
+/// Returns the durations of a picture's latency stages, from the measurement of the pose until the picture is lit, in
+/// milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);

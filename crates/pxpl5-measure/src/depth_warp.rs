@@ -40,13 +40,13 @@ impl DepthPicture {
     }
 }
 
-/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the picture has
-/// a gap behind which content is hidden. Assumed, 1.02 to 1.2: the depth of a floor that is seen at a grazing angle of
-/// 5 degrees changes by a factor of 1.03.
+/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the surface has
+/// an edge, and the nearer surface hides content of the farther surface. Assumed, 1.02 to 1.2: the depth of a floor
+/// that is seen at a grazing angle of 5 degrees changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
-/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that the
-/// compiler computes several pixels at once.
+/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
+/// instructions can compute several pixels together.
 #[derive(Debug, Default)]
 struct SeenRow {
     /// Positions on the screen, horizontally in pixels and vertically in rows of the field.
@@ -474,7 +474,8 @@ mod tests {
         }
     }
 
-    /// An approach magnifies. A floor seen from above is slanted. Neither may open cracks.
+    /// Checks a picture that grows because the head approaches, and a slanted floor that is seen from above. Neither
+    /// picture may have cracks.
     #[test]
     fn surfaces_that_grow_or_lean_have_no_cracks() {
         let floor = |_: u32, y: u32| 1.6 * HmdView::ntsc().focal_px() as f32 / (y as f32 + 60.0);

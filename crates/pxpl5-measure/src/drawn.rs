@@ -10,8 +10,8 @@ use tracking::Pose;
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
-    /// Time at which the tracker measured the newest report behind the pose. `None` before the first report, or if
-    /// unknown.
+    /// Time at which the tracker measured the newest report from which the pose was computed. `None` before the first
+    /// report, or if unknown.
     pub(crate) measured_at: Option<Time>,
 }
 

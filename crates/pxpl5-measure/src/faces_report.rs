@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Results of an address recalculation pipeline and its display memories in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FacesReport {
-    /// Name and version of this record's layout.
+    /// Name and version of the layout of this report.
     pub schema: &'static str,
     /// Number of texels along the edge of a face, including guard texels.
     pub face_texels: u64,
@@ -64,7 +64,7 @@ pub struct MemoryReport {
 }
 
 impl FacesReport {
-    /// Name and version of the record's layout.
+    /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
     /// Returns the report of a run, or `None` if its display is not an address recalculation pipeline.

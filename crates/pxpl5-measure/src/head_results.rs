@@ -98,8 +98,8 @@ impl Budget {
         sum.result()
     }
 
-    /// Returns the latency of each picture whose records are in memory, from the measurement of the pose until the
-    /// middle of the picture is lit, in milliseconds.
+    /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
+    /// measurement of the pose until the middle of the picture is lit.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();

@@ -39,7 +39,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
+    /// Writes the moved rows that a field lights. Rows that show no drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let reprojector = self.reprojector(screen, field);
         if self.setting.by != Warp::Depth || !self.move_whole_rows(&reprojector, screen, field, out) {

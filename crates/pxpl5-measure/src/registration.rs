@@ -18,7 +18,7 @@ pub(crate) struct Evaluator {
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
-    /// Distance of the assumed content on rays that hit nothing, in metres.
+    /// Distance at which content is assumed on rays that hit nothing, in metres.
     distance_m: f64,
 }
 

@@ -205,7 +205,7 @@ fn faults(record: &Record) -> impl Iterator<Item = String> {
 }
 
 impl Report {
-    /// Name and version of the record's layout.
+    /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
 
     /// Computes the report of an outcome.
@@ -302,10 +302,10 @@ impl Report {
     }
 }
 
-/// Computes the trace hash of a text without storing the text: one record at time zero with the fact 9 and the text's
+/// Computes the hash of a text, as the trace hash of one record at time zero with the fact number 9 and the text's
 /// bytes.
 ///
-/// The text of a long run would be large.
+/// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);
 
 impl Default for HashedText {

@@ -36,8 +36,8 @@ impl Move {
         }
     }
 
-    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the
-    /// picture's eye.
+    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the eye for
+    /// which the picture was drawn.
     pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),

@@ -15,7 +15,8 @@ use tracking::Pose;
 pub(crate) struct NewestPose {
     /// Pose of the head, predicted for the middle of the time in which the part of the scan is lit.
     pub(crate) pose: Pose,
-    /// Time at which the tracker measured the report behind the pose. `None` before the first report.
+    /// Time at which the tracker measured the newest report from which the pose was computed. `None` before the first
+    /// report.
     pub(crate) measured_at: Option<Time>,
 }
 

@@ -28,7 +28,7 @@ impl Cut {
         (target.buffer, target.lines, target.grid)
     }
 
-    /// Returns the newest arrival in a pixel's region up to the instant `at`.
+    /// Returns the newest arrival, up to the instant `at`, of the region that contains a pixel.
     fn newest(&self, x: u32, y: u32, at: Time) -> Option<(Time, CopyTarget)> {
         let row = match self.of.lines {
             Lines::Frame => y,

@@ -148,7 +148,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Joins the start and the end of each stage on each board.
+    /// Collects the stages of each board. Each stage is joined from the record of its start and the record of its end.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
@@ -402,7 +402,8 @@ impl<'a> Trail<'a> {
         self.stages.iter().filter(is_of).collect()
     }
 
-    /// Continues at the last TRANSFORM of a surface. RENDER began when the last graphics processor had ended TRANSFORM.
+    /// Continues at the last TRANSFORM of a surface. The last TRANSFORM counts, because RENDER begins when all graphics
+    /// processors have ended TRANSFORM.
     fn to_transform(&self, way: &mut Way, picture: PictureNumber, surface: Option<SurfaceId>) -> At {
         let is_of = |work: &StageWork| {
             work.stage == Stage::Transform

@@ -100,7 +100,7 @@ pub struct PortUtilisation {
 /// Share of time for which one port was busy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortShare {
-    /// Title of the surface behind the port, or the display's name with the port's index.
+    /// Title of the surface whose pixels the port receives, or the display's name with the port's index.
     pub port: String,
     /// Share of time in which messages arrived, 0 to 1.
     pub busy: f64,

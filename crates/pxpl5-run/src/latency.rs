@@ -107,8 +107,8 @@ fn first_light(record: &Record, shown_at: Time) -> Time {
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap, and the instant at which the
-/// first pixel is lit.
+/// Times of a stereo frame. Each surface has a start of TRANSFORM and an end of COPY. Both surfaces share the swap and
+/// the instant at which the first pixel is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],

@@ -137,7 +137,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns true if the pipeline draws faces of a cube around the head. The display must accept cube faces
+    /// Returns true if the pipeline draws faces of a cube around the viewer's head. The display must accept cube faces
     /// ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
     fn draws_faces(&self) -> bool {
         false

@@ -75,7 +75,7 @@ pub struct ClosedForm {
 /// Description of a pipeline in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct PipelineEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Name of the family. All variants of the pipeline have the same family.
     pub family: &'static str,
@@ -101,7 +101,7 @@ pub struct PipelineEntry {
 /// Description of a display in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Function that returns the display's configuration with the values from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,

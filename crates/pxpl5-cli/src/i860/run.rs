@@ -92,7 +92,7 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
     })
 }
 
-/// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns its address and its number of words.
+/// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns the address of the range and the number of words.
 fn span(program: &Program, text: &str) -> Result<(u32, usize), String> {
     let Some((at, words)) = text.rsplit_once(':') else { return Ok((known(program, text)?, 1)) };
     let count = words.parse().ok().filter(|count| (1..=65_536).contains(count));

@@ -20,8 +20,8 @@ use tracking::view::RandomOrder;
 
 /// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
 ///
-/// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
-/// single pixels, but a message with a single pixel would take 17 words on the ring.
+/// Each batch of blocks uses the newest view and is shown immediately, without a swap. A *pass* draws every block once.
+/// The papers update single pixels, but a message with a single pixel would take 17 words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.

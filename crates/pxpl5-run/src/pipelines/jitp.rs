@@ -137,8 +137,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: the number that arrived before the field's end, the number that arrived before the
-/// beam reached them, and the arrival time of the middle strip.
+/// Arrivals of a field's regions. Two numbers count the regions that arrived before the field's end, and before the
+/// beam reached them. The time is the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

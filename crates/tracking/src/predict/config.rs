@@ -164,8 +164,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports), so the
-    /// caller passes either the baseline of the position or the baseline of the orientation.
+    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports). The
+    /// caller therefore passes the baseline of either the position or the orientation.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

@@ -137,7 +137,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// Applies the faults that damage this report.
+    /// Damages the report by the first injected fault (NaN values or a jump of the pose) that applies to this report.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {

@@ -1,4 +1,4 @@
-//! History of the cube faces that were drawn around a head, and the latency of head rotation.
+//! History of the cube faces that were drawn around the viewer's head, and the latency of head rotation.
 
 use crate::observers::FinalResults;
 use crate::outcome::Outcome;
