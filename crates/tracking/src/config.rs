@@ -115,11 +115,11 @@ parameter_table! {
         position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives no value; assumed below the tracker's static accuracy";
         /// Random orientation error of the Fastrak that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives no value; assumed below the tracker's static accuracy";
-        /// Constant position error of the Fastrak, the same in every report of a run. The value is the rms along each
-        /// axis over all seeds.
+        /// Constant position error of the Fastrak, the same in every report of a run. The value is the root mean square
+        /// of this error along each axis, over all seeds.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
-        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the rms about
-        /// each axis over all seeds.
+        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the root mean
+        /// square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
@@ -137,11 +137,11 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
         /// Random orientation error of the Flock of Birds that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
-        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the rms along
-        /// each axis over all seeds.
+        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the root mean
+        /// square of this error along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
-        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the rms
-        /// about each axis over all seeds.
+        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the root
+        /// mean square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
         /// Time from the first report of a Flock of Birds until a host with a patched kernel crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
@@ -160,10 +160,10 @@ parameter_table! {
         /// Random orientation error of the optical ceiling tracker that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
         /// Constant position error of the optical ceiling tracker, the same in every report of a run. The value is the
-        /// rms along each axis over all seeds.
+        /// root mean square of this error along each axis, over all seeds.
         position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
         /// Constant orientation error of the optical ceiling tracker, the same in every report of a run. The value is
-        /// the rms about each axis over all seeds.
+        /// the root mean square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
@@ -179,11 +179,11 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
         /// Random orientation error of the 3Space that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
-        /// Constant position error of the 3Space, the same in every report of a run. The value is the rms along each
-        /// axis over all seeds.
+        /// Constant position error of the 3Space, the same in every report of a run. The value is the root mean square
+        /// of this error along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
-        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the rms about each
-        /// axis over all seeds.
+        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the root mean
+        /// square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Depth of the position error by metal, at 1 m from the transmitter. Metal bends a measured plane into a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
