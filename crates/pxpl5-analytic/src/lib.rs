@@ -20,9 +20,9 @@
 //!
 //! # Not modelled
 //!
-//! - Channels that pixels use.
+//! - Ring channels that messages with pixels occupy.
 //! - Interrupts of a GP by messages of other boards.
-//! - Words of a clump's last message besides its primitives.
+//! - Words of a clump's last message, except the words of primitives.
 //! - The host's own messages. A mean rate replaces them.
 //! - Views after the first view (Slats).
 //! - Memory.

@@ -18,14 +18,14 @@ pub(super) const REGIONS: usize = 20;
 /// Largest number of ring channels in the model.
 pub(super) const MAX_CHANNELS: usize = 8;
 
-/// Number of channels that copies to two frame buffers need.
+/// Number of ring channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
 
-/// Number of eyes. Each structure is placed once per eye.
+/// Number of eyes. A graphics processor transforms each structure of the display list once per eye.
 const EYES: f64 = 2.0;
 
-/// Returns the time to begin a pass over structures for both eyes, in nanoseconds. `sphere_views` is the number of
-/// structures with spheres.
+/// Returns the time that a graphics processor needs to begin a pass over all structures for both eyes, in nanoseconds.
+/// `sphere_views` is the number of structures with spheres.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
@@ -71,7 +71,7 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
-/// Mean values of a triangle, for one eye.
+/// Mean numbers that one triangle causes, for one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
     /// Number of entries in all bins together.

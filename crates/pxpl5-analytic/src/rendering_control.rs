@@ -64,12 +64,12 @@ impl StereoTimes {
     }
 }
 
-/// Returns the mean of a quantity over frames, in milliseconds. `ns` returns the quantity of one frame in nanoseconds.
+/// Returns the mean of a time over frames, in milliseconds. `ns` returns the time of one frame in nanoseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which all pictures so far completed each stage. A picture before the first picture counts as complete at
+/// Times at which all pictures so far completed each stage. The predecessor of the first picture counts as complete at
 /// time 0.
 #[derive(Debug, Default)]
 struct History {

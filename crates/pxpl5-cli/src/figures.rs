@@ -165,10 +165,11 @@ fn own(rows: &[FigureRow]) -> String {
     rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
 }
 
-/// Width of the chart in millimetres: the text of a page.
+/// Width of the chart in millimetres, which is the width of the text on a page.
 const CHART_MM: f64 = 165.0;
 
-/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are relative too.
+/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are also in percent of
+/// the published values.
 fn chart(rows: &[FigureRow]) -> Chart {
     let series = |name: &str, is_free: bool| {
         // Each row keeps the position of its number, so that the two series share the axis.

@@ -10,13 +10,13 @@ use tracking::Pose;
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
-    /// Time at which the tracker measured the newest report behind the pose. `None` before the first report, or if
-    /// unknown.
+    /// Time at which the tracker measured the newest report from which the pose was computed. `None` before the first
+    /// report, or if unknown.
     pub(crate) measured_at: Option<Time>,
 }
 
 impl Moment {
-    /// Returns true if two moments give the same picture.
+    /// Returns true if views drawn for two moments are the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
@@ -34,15 +34,15 @@ pub(crate) enum Drawn {
     },
     /// A picture that the display shifts while scanning it out (raster offset).
     AdvancedMotion(Moment, DVec2),
-    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest scene point in all
-    /// display memories is visible.
+    /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
+    /// point in all display memories is visible.
     Faces(FacesSeen),
 }
 
-/// The memories and the direction from which a pixel of an address recalculation display was read.
+/// The display memories and the direction from which a pixel of an address recalculation display was read.
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
-    /// For each memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
+    /// For each display memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
     /// structure of the scene. The flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums the errors of a run's pictures as they are displayed.
+/// Sums of the pixel errors of a run's pictures in the way in which the display shows the pictures.
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -62,7 +62,8 @@ impl ErrorSum {
         judging.shown.forget(run);
     }
 
-    /// Returns the pixel errors, and the results of the eye if pixels are lit for some time or pictures are moved.
+    /// Returns the pixel errors. Also returns an [`EyeReport`] if pixels are lit for more than an instant, or if a
+    /// device moves pictures.
     pub(crate) fn result(self) -> (PixelErrors, Option<EyeReport>) {
         self.collected.map(Collected::result).unwrap_or_default()
     }
@@ -78,7 +79,7 @@ struct Evaluation {
     /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
     /// lit.
     at_one_instant: bool,
-    /// First display period that is not evaluated yet.
+    /// First display period whose pixels are not evaluated yet.
     next: PeriodNumber,
 }
 
@@ -86,7 +87,8 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The value holds the offset of the current field, if the field has one.
+    /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
+    /// offset.
     AdvancedMotion(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
@@ -155,7 +157,8 @@ impl Evaluation {
         fields
     }
 
-    /// Replaces the poses of the visible views by the poses that the run would have had without one cause of error.
+    /// Replaces the poses of all visible views. The new poses are those that the run would have had without one cause
+    /// of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
@@ -319,7 +322,8 @@ impl Evaluation {
         }
     }
 
-    /// Checks at many positions of a field if the visible content lies beyond the edge of its picture.
+    /// Checks at many screen positions of a field if the content that should be visible lies beyond the edge of the
+    /// drawn picture.
     ///
     /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
@@ -369,7 +373,7 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of grid errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
+/// Number of pixel errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
 /// degrees.
 const KEPT_OF_GRID: usize = 8;
 

@@ -228,19 +228,20 @@ impl Measure {
     /// Name of the number of evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
-    /// Returns the name with the unit.
+    /// Returns the name of the quantity, which includes the unit.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// Returns the description of the measured interval or count, in one sentence.
+    /// Returns the definition of the quantity: a description of the measured interval or count, in one sentence.
     #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition
     }
 
-    /// Returns the value, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity in the given results, or `None` if they have no finite value for this
+    /// quantity.
     #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {
@@ -252,9 +253,9 @@ impl Measure {
 }
 
 impl Measure {
-    /// Returns the value for a run, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity for a run, or `None` if the run has no finite value for this quantity.
     ///
-    /// [`Measure::of`] avoids a second report if a report already exists.
+    /// This method computes a report of the run. If a report already exists, [`Measure::of`] takes less time.
     #[must_use]
     pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
         let value = match self.0.value {

@@ -13,7 +13,7 @@ use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Traini
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, SettingError};
 
-/// A head motion that several readers share.
+/// A head motion that several parts of a run share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
 /// Error for a head that cannot be simulated.
@@ -48,7 +48,7 @@ pub enum HeadPlace {
 }
 
 impl HeadPlace {
-    /// All meanings with their names in experiment files.
+    /// All meanings of a head motion's poses, with their names in experiment files.
     pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
 
@@ -85,12 +85,12 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Distances, in metres, at which pixel errors can be evaluated.
+/// Smallest and largest distance, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the noise that the tracker really
-    /// has.
+    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
+    /// model adds.
     ///
     /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is. After
     /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
@@ -146,7 +146,7 @@ impl Head {
         Self { motion, ..self }
     }
 
-    /// Makes a run tune the parameters of the predictor. The search begins at the current parameters.
+    /// Makes a run tune the parameters of the predictor. The tuning search begins at the current parameters.
     #[must_use]
     pub const fn tuned(mut self) -> Self {
         self.numbers = Numbers::ToBeTuned;
@@ -238,12 +238,13 @@ impl Head {
         Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// Returns the contents of all reports.
+    /// Returns the contents of all tracker reports, in order of arrival.
     pub(crate) fn contents(&self) -> Contents {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the tracker's reports about a motion, or the reports that replace them, in order of arrival.
+    /// Returns the tracker's reports about a motion, in order of arrival. If the caller has replaced the reports,
+    /// returns the given reports instead.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),

@@ -29,7 +29,7 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// Values that a key allows.
+/// The values that a key (setting of a pipeline) allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
     /// The key allows true and false.

@@ -44,7 +44,7 @@ pub struct Reprojection {
 }
 
 impl Warp {
-    /// All methods, with their names in experiment files.
+    /// All methods by which a device moves a picture, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("shift", Self::Shift), ("rotation", Self::Rotation), ("depth", Self::Depth)];
 }
 
@@ -59,7 +59,7 @@ impl Every {
     ///
     /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
     /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
-    /// 1,000). In both cases a pipeline beside the scan holds a few lines.
+    /// 1,000). In both cases the device works during the scan and holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

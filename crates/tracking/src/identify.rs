@@ -116,8 +116,8 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a number only if it differs from the papers' value. Thus an experiment with the papers' values keeps the name
-/// that it had before the number became a setting.
+/// Writes the value of a parameter only if the value differs from the papers' value. Thus an experiment with the
+/// papers' values keeps the name that it had before the parameter became a setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -190,7 +190,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce it.
+/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce the picture.
 ///
 /// # Errors
 ///

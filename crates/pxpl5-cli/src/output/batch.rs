@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Place of the output, for error messages.
+    /// Description of the output and of its option, for error messages.
     place: Place,
     files: Vec<Staged>,
     /// Files of the previous run. These files are deleted after all new files have their names.

@@ -20,8 +20,8 @@ use tracking::view::RandomOrder;
 
 /// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
 ///
-/// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
-/// single pixels, but a message with a single pixel would take 17 words on the ring.
+/// Each batch of blocks uses the newest view and is shown immediately, without a swap. A *pass* draws every block once.
+/// The papers update single pixels, but a message with a single pixel would take 17 words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
@@ -85,8 +85,8 @@ impl Default for Frameless {
     }
 }
 
-/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master's 24 us per order would limit the
-/// rate.
+/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
+/// its orders to a slave takes 24 us.
 ///
 /// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
 const LEAST_BATCH: u64 = 4;
@@ -153,7 +153,8 @@ impl Pipeline for Frameless {
 }
 
 impl PictureRules for Frameless {
-    /// Returns the updates. The last block of an update defines the times of the whole update.
+    /// Returns the updates, each of which draws one batch of blocks. The last block of an update defines the times of
+    /// the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
@@ -195,7 +196,7 @@ impl PictureRules for Frameless {
         "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
-    /// Returns the number of updates in a pass, because a pass draws a whole picture.
+    /// Returns the number of updates (batches of blocks) in a pass, because a pass draws a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }

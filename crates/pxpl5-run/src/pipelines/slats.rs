@@ -31,7 +31,7 @@ pub enum Code {
 pxpl5_sim::parameters::named!(Code, "version of the code", Code::ALL);
 
 impl Code {
-    /// All versions with their names in experiment files.
+    /// All versions of the graphics processor's code, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("1994", Self::Of1994), ("1995", Self::Of1995), ("optimised", Self::Optimised)];
 
     const fn timing(self) -> GpTiming {
@@ -63,7 +63,7 @@ pub enum SlatsLighting {
 pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
 
 impl SlatsLighting {
-    /// Both choices with their names in experiment files.
+    /// Both sources of vertex colours, with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("precomputed", Self::Precomputed), ("gp", Self::OnGp)];
 
     const fn shading(self) -> Shading {
@@ -286,11 +286,11 @@ impl PictureRules for Slats {
     }
 }
 
-/// Number of retraces after a late field's own retrace within which a backup can still show the field. Within these
-/// retraces, the lines of the field are scanned twice more.
+/// Number of retraces after a late field's own retrace within which [`Slats::backup`] can still show the field. Within
+/// these retraces, the display scans the lines of the field twice more.
 const LATER_RETRACES: u64 = 4;
 
-/// State of the copy of a field to the display.
+/// Progress of the copy of a field to the display.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
@@ -311,7 +311,7 @@ impl Copied {
     }
 }
 
-/// Buffers that each frame buffer displayed, for runs with a backup.
+/// The buffer that each eye's frame buffer displayed over time, for runs of [`Slats::backup`].
 struct Backup {
     /// For each surface, the first period and the buffer of each swap, in order.
     swaps: [Vec<(PeriodNumber, u8)>; 2],

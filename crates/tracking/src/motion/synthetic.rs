@@ -27,7 +27,7 @@ pub struct Band {
     pub power: u32,
 }
 
-/// Index of the random stream from which the seed of another motion of the same kind is drawn ([`Motion::sibling`]).
+/// Index of the random stream that gives the seed of another motion of the same kind ([`Motion::sibling`]).
 const SIBLING: u64 = 10;
 
 /// Settings of the random head motion [`Synthetic`]: one frequency band for each kind of movement, and the mean

@@ -9,17 +9,17 @@ use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Distance along the path from a walking head to the point at which it looks, m. Assumed. The head turns towards a
-/// corner before it reaches the corner. At 1 m/s and a square corner it turns at up to 76 degrees per second, which a
-/// real head can do.
+/// Distance along the path from a walking head to the point at which the head looks, m. Assumed. The head turns towards
+/// a corner before it reaches the corner. At 1 m/s and a square corner the head turns at up to 76 degrees per second,
+/// which a real head can do.
 const AHEAD_M: f64 = 1.5;
 
-/// Least distance between two successive corners of a path, m. The direction between two nearer corners would be
-/// inaccurate.
+/// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
+/// direction from one corner to the next.
 const LEAST_LEG_M: f64 = 1e-3;
 
 /// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
-/// at a point of the path ahead. After [`Self::with_glances`] it also looks around.
+/// at a point of the path ahead. After [`Self::with_glances`] the head also looks around.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,

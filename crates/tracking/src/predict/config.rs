@@ -11,7 +11,8 @@ use crate::config as table;
 use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
 
-/// Least position noise that a Kalman filter may assume, m. A noise of 0 would make the covariance matrix singular.
+/// Least position noise (m) and least orientation noise (degrees) that a Kalman filter may assume. A noise of 0 would
+/// make the covariance matrix singular.
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
@@ -163,8 +164,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports), so the
-    /// caller chooses the position's or the orientation's.
+    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports). The
+    /// caller therefore passes the baseline of either the position or the orientation.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

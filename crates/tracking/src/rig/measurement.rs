@@ -14,7 +14,7 @@ pub struct LowPointReport {
 /// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Report by which the host detected the pendulum's low point.
+    /// Tracker report by which the host detected the pendulum's low point.
     pub sighting: LowPointReport,
     /// Instant at which the host started a frame because of the low point, ps.
     pub started_ps: u64,
@@ -27,7 +27,7 @@ pub struct InsidePass {
 pub struct OutsidePass {
     /// Instant at which the photodiode detects the pendulum at its low point, ps.
     pub low_point_ps: u64,
-    /// Instant at which the host switches the D/A line because it has detected the low point, ps.
+    /// Instant at which the host switches its D/A output because the host has detected the low point, ps.
     pub dac_ps: u64,
     /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
     pub light_ps: u64,
@@ -100,8 +100,8 @@ impl Side {
 /// Greatest rounding error of a mean latency, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Latencies of the same passes measured outside and inside, with limits of their difference. "Outside" means by
-/// oscilloscope, "inside" by time stamps.
+/// Latencies of the same passes of the pendulum, measured outside and inside, with limits of the differences. "Outside"
+/// means by oscilloscope, "inside" by time stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Measurements with the oscilloscope, one for each pass of the pendulum in order.
@@ -184,21 +184,21 @@ impl Measurement {
     }
 }
 
-/// The traces of an oscilloscope with three channels: the pendulum's low point, the D/A line and the screen.
+/// The traces of an oscilloscope with three channels: the pendulum's low point, the host's D/A output and the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
     /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
     /// instant of the low point.
     pub low_point: ScopeTrace,
-    /// Trace of the D/A line, with one step for each frame that a low point requested.
+    /// Trace of the host's D/A output, with one step for each frame that a low point requested.
     pub dac: ScopeTrace,
     /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the D/A line.
-    /// A pulse lasts as long as the pendulum takes to cross the light beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the host's
+    /// D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -207,9 +207,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Finds the passes of the pendulum in the traces. Each step of the D/A line gives one pass. The low point lies
-    /// before this step. After this step, the screen steps to the same level. Returns `None` if the screen lacks one of
-    /// these steps.
+    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
+    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
+    /// `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

@@ -34,7 +34,7 @@ impl TrackerModel {
         Ok(Self { config })
     }
 
-    /// Returns the settings, which are all within their ranges.
+    /// Returns the settings of the tracker, which are all within their ranges.
     pub fn config(&self) -> &TrackerConfig {
         &self.config
     }

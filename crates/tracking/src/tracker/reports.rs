@@ -137,7 +137,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// Applies the faults that damage this report.
+    /// Damages the report by the first injected fault (NaN values or a jump of the pose) that applies to this report.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -183,7 +183,7 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Draws the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
+/// Computes the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();

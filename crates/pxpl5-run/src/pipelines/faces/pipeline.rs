@@ -30,7 +30,7 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The renderer that draws the faces.
+/// The renderer that draws the cube faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
@@ -44,7 +44,7 @@ pub enum FaceSource {
 /// A pipeline that draws six cube faces for an address recalculation display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
-    /// The renderer that draws the faces.
+    /// The renderer that draws the cube faces.
     pub source: FaceSource,
     /// Policy that assigns structures to display memories.
     pub policy: FacePolicy,
@@ -54,10 +54,10 @@ pub struct FacePipeline {
     pub shading: Shading,
     /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
-    /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
+    /// Otherwise a whole structure is in the fastest display memory of any cell that it touches.
     pub segmented: bool,
     /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
-    /// memory.
+    /// display memory.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -162,7 +162,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// Returns the plan by which the host selects the next update of a display memory.
+    /// Returns the plan (a function) by which the host selects the next update of a display memory.
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
@@ -409,7 +409,7 @@ impl PictureRules for FacePipeline {
         true
     }
 
-    /// Counts the fields since the first swap of any memory, because each field is shown with its own latched
+    /// Counts the fields since the first swap of any display memory, because each field is shown with its own latched
     /// orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();

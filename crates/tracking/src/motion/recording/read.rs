@@ -20,7 +20,8 @@ const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"]
 /// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Indices of time, position and quaternion in a line of a TUM file. The real part of the quaternion comes first here.
+/// Indices of the fields of a TUM line in the order of a sample: time, position, and the quaternion with its real part
+/// first.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
 /// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals causes a much
