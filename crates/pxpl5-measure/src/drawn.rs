@@ -33,7 +33,7 @@ pub(crate) enum Drawn {
         on_screen: bool,
     },
     /// A picture that the display shifts while scanning it out (raster offset).
-    AdvancedMotion(Moment, DVec2),
+    ShiftedRaster(Moment, DVec2),
     /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
     /// point in all display memories is visible.
     Faces(FacesSeen),
@@ -59,7 +59,7 @@ impl Drawn {
                 let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
                 Time(from.objects_at.0 + ahead_ps as u64)
             }
-            Self::AdvancedMotion(..) => light,
+            Self::ShiftedRaster(..) => light,
             Self::Faces(faces) => faces.aimed_at,
         }
     }
@@ -79,7 +79,7 @@ mod tests {
             assert_eq!(between.instant(light), Time(expected), "{part}");
         }
         assert_eq!(Drawn::View(moment(7)).instant(light), Time(7));
-        assert_eq!(Drawn::AdvancedMotion(moment(7), DVec2::ONE).instant(light), light);
+        assert_eq!(Drawn::ShiftedRaster(moment(7), DVec2::ONE).instant(light), light);
         let faces = FacesSeen { memories: Vec::new(), aimed_at: Time(5) };
         assert_eq!(Drawn::Faces(faces).instant(light), Time(5));
     }

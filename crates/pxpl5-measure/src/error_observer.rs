@@ -89,7 +89,7 @@ enum Content {
     Plain,
     /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
     /// offset.
-    AdvancedMotion(Estimator, Option<RasterOffset>),
+    ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
@@ -135,7 +135,7 @@ impl Evaluation {
         let estimator = Estimator::new(head, without);
         let content = match showing {
             Showing::Plain => Content::Plain,
-            Showing::RasterOffset => Content::AdvancedMotion(estimator, None),
+            Showing::RasterOffset => Content::ShiftedRaster(estimator, None),
             Showing::Ideal => Content::Ideal(estimator),
             Showing::Reprojected(setting) => Content::Reprojected(Reprojector::new(head, setting, without)),
             Showing::DelayedVideo => Content::DelayedVideo,
@@ -180,7 +180,7 @@ impl Evaluation {
     fn evaluate(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         let display = run.record.display();
         // With a shifted raster, first find the offset of this field.
-        if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
+        if let Content::ShiftedRaster(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
             *of_field = pose.map(|pose| offset(estimator, display, field, &pose));
         }
@@ -222,10 +222,10 @@ impl Evaluation {
                 self.shown.seen(run, place, field, begins)
             }
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
-            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, begins) {
+            Content::ShiftedRaster(_, offset) => match self.shown.seen(run, place, field, begins) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.evaluator.view, begins.0));
-                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::ShiftedRaster(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
                 other => other,
@@ -334,7 +334,7 @@ impl Evaluation {
             // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
             // picture.
             let from = match &self.content {
-                Content::AdvancedMotion(_, offset) => {
+                Content::ShiftedRaster(_, offset) => {
                     let Some(offset) = offset else { continue };
                     let known = display.tick(field);
                     let arrived = self.head.report_by(known);

@@ -167,6 +167,6 @@ pub(crate) fn pose_of_field(run: &FinalResults<'_>, shown: &Shown, field: Period
     let y = Rows::lit(display, field).first;
     match shown.drawn(run, [x, y], field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
-        Drawn::Between { .. } | Drawn::AdvancedMotion(..) | Drawn::Faces(_) => None,
+        Drawn::Between { .. } | Drawn::ShiftedRaster(..) | Drawn::Faces(_) => None,
     }
 }

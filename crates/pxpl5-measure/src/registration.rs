@@ -66,7 +66,7 @@ impl Evaluator {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
-            Drawn::AdvancedMotion(moment, shift) => self.met(moment, place - *shift),
+            Drawn::ShiftedRaster(moment, shift) => self.met(moment, place - *shift),
             // Find by iteration the content that interpolation moves to this position.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
@@ -161,7 +161,7 @@ impl Evaluator {
     /// interpolated pose and time.
     pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
         match drawn {
-            Drawn::View(moment) | Drawn::AdvancedMotion(moment, _) => *moment,
+            Drawn::View(moment) | Drawn::ShiftedRaster(moment, _) => *moment,
             Drawn::Between { from, to, part, .. } => between(from, to, *part),
             Drawn::Faces(faces) => faces.memories[0].0,
         }
