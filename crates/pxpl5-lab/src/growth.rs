@@ -42,7 +42,7 @@ const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5)
 const MEMORY_BYTES: u64 = 1 << 30;
 
 /// Time to process a triangle in nanoseconds: on its GP, and on a renderer for the 1.35 regions that it touches. The
-/// length of a run follows from these times.
+/// number of fields of a run is computed from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
 /// Number of frames that a run must be long enough to show.
@@ -277,8 +277,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of host time over triangles, both logarithmic. Each row is one scene size, and each column a tenth of
-/// a decade.
+/// Writes a chart of host time over triangles, both logarithmic. Each row of the chart is one scene size, and each
+/// column is a tenth of a decade of the host time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

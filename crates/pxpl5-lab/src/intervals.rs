@@ -135,7 +135,7 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around their values for the given bench (common
+/// Computes the intervals of all figures at the analytic level, around the figures' values for the given bench (common
 /// settings of all measurements).
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
@@ -176,7 +176,7 @@ const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
 /// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both
-/// ends of its range, one at a time.
+/// ends of its range, while the other parameters keep their presets.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -220,8 +220,8 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs into the interval of one figure. `ends` has the values at both ends of every range in turn, and
-/// `joint` the values of the random machines.
+/// Combines two designs into the interval of one figure. `ends` has the figure's values at both ends of each parameter
+/// range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -237,7 +237,7 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the values of the figure under other interpretations to the interval.
+    /// Adds the values of the figure under other interpretations of the papers to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
@@ -267,7 +267,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure that is listed.
+/// Smallest relative change of a figure for which a parameter is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {

@@ -15,9 +15,9 @@
 //! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only the point of this line
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
-//! - Two processes never write into one folder. The second process is refused.
-//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, whatever the file measures.
-//!   Without these counts, a mean over few pictures looks like a mean over all.
+//! - Two processes never write into one folder. The second process gets an error.
+//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, even if the file does
+//!   not select these quantities. Without these counts, a mean over few pictures looks like a mean over all.
 //!
 //! # Not modelled
 //!

@@ -1,5 +1,5 @@
 //! Measures the mean software time of a message. The measurement covers all messages that a board receives and sends
-//! around its passes over a scene. The time of bin entries is subtracted.
+//! around its passes over a scene. The additional time of each bin entry in a sent message is subtracted.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{BinHandoffWork, FrameView, Pass, RegionEnvelope, region_messages};
@@ -37,7 +37,8 @@ pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
 }
 
 impl Traffic {
-    /// Returns the mean time of a message in nanoseconds. For each bin entry, `token_entry_ns` is subtracted.
+    /// Returns the mean time of a message in nanoseconds. `token_entry_ns` is the time to send one bin entry, which is
+    /// subtracted for each entry of a sent bin.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
@@ -115,8 +116,8 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     Ok(())
 }
 
-/// Executes the messages of one token. The slave is in the middle of the chain of slaves, so the region neither begins
-/// nor ends there.
+/// Executes the messages of one token: the slave receives the token, sends the bin of the region, and passes the token
+/// on. The slave is neither the first nor the last slave that gets the token.
 fn token(
     processor: &mut Processor,
     pass: &Arc<Pass>,

@@ -12,7 +12,7 @@ pub enum IntervalMethod {
     None,
     /// Student's t over the means of the seeds.
     StudentT,
-    /// Student's t over the means of the seeds, for the logarithm (delta method).
+    /// Student's t over the means of the seeds, with an interval for the logarithm of the mean (delta method).
     StudentTOfLogarithm,
     /// Moving-block bootstrap over the fields of one motion ([`BlockBootstrap`](super::BlockBootstrap)).
     MovingBlockBootstrap,
@@ -97,7 +97,7 @@ impl MeanInterval {
         Some(self.high - self.low).filter(|width| width.is_finite())
     }
 
-    /// Returns the mean alone.
+    /// Returns the same mean without its confidence interval.
     pub(super) const fn without_interval(self) -> Self {
         Self { low: f64::NAN, high: f64::NAN, method: IntervalMethod::None, ..self }
     }

@@ -1,4 +1,5 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that this width needs.
+//! The precision that a comparison requires: the greatest width of the interval of a mean error, and the number of
+//! seeds that is necessary for this width.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;

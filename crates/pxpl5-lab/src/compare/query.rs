@@ -24,7 +24,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 const MOST_FIELDS: u64 = 250_000;
 
 /// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
-/// late. Due pictures can be several periods apart.
+/// late. The difference is allowed because due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
@@ -85,7 +85,7 @@ pub struct Comparison {
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Count of finished runs. The number of all runs grows when seeds are added.
+/// The number of finished runs and the number of all runs. The number of all runs grows when seeds are added to a row.
 struct Progress<'a> {
     done: AtomicU64,
     all: AtomicU64,
@@ -286,7 +286,8 @@ impl CompareQuery {
         }
     }
 
-    /// Returns seeds that follow the seeds of the query and the seeds that were added before.
+    /// Returns `more` new seeds for a row that has already run with `ran` seeds. The new seeds follow all seeds of the
+    /// row.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;
@@ -381,7 +382,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns the criterion of the triangle limit in words.
+/// Returns, in words, the condition under which a number of triangles counts as drawn in time.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -397,7 +398,7 @@ impl Comparison {
     /// Four kinds of rows are never the best:
     ///
     /// - rows with pictures that were due and not shown
-    /// - the reference
+    /// - the row `ideal`, which shows ideal pictures as a reference
     /// - rows that were evaluated over other display periods
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]

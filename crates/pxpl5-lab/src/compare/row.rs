@@ -100,12 +100,13 @@ pub struct ComparisonRow {
     pub late_regions: Option<usize>,
     /// Error of position on the screen, over a grid of pixels and all evaluated fields.
     pub error: ErrorSpread,
-    /// Display periods over which the first seed was evaluated. `None` if there is no seed, or if the run ended before
-    /// the evaluation began.
+    /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
+    /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
     /// Contributions of all causes to the mean error. The sum of all contributions is the mean error.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty for the reference, which is computed without firmware.
+    /// Mean error of the first seed with each predictor. Empty for the row `ideal`, whose pictures no predictor
+    /// changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
     /// search, or the search failed.
@@ -210,7 +211,7 @@ pub(super) struct Sampling {
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the known values, or `None` if all values are unknown.
+/// Returns the sum of the values that are not `None`, or `None` if there is no such value.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())

@@ -1,4 +1,5 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster of its display.
+//! The tracked head of an experiment: its motion, tracker and predictor, and the raster: the correction that the
+//! display applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;

@@ -22,7 +22,7 @@ pub struct Settings {
     remarks: BTreeMap<String, String>,
 }
 
-/// Returns the name of a value from a list of choices.
+/// Returns the name that a list of choices gives to a value.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
     choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }

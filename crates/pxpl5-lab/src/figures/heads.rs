@@ -73,8 +73,8 @@ pub(super) fn ratio_of_errors() -> FigureValue {
 /// Number of display fields in the runs for figure 19: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of the latency stages that the paper adds. The stages that the paper leaves out
-/// appear as details.
+/// Measures figures 19 and 19b: the sum of those stages of the latency that the paper adds. The details state the other
+/// stages of the latency.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

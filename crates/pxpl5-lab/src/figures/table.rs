@@ -51,7 +51,8 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Returns a figure that the model reproduces.
+/// Creates a figure of the table, without a cause of a difference between model and paper. The method `because` adds a
+/// cause.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),

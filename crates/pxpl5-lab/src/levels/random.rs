@@ -57,7 +57,7 @@ fn slats(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
 }
 
 /// Changes a preset at random: its numbers of boards, and ring and FIFO parameters within the ranges of their sources.
-/// Two ring channels remain for copies, as the analytic level requires.
+/// At least two ring channels remain for the transfer of finished regions, because the analytic level requires them.
 fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
     let mut machine = MachineConfig::preset(preset)?;
     machine.n_gps = random.between(gps.0, gps.1) as usize;

@@ -96,7 +96,7 @@ pub struct OverLimit {
 /// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
-    /// Closeness of the result to the goal. A greater score is better.
+    /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
     score: f64,
     because: Option<String>,
 }

@@ -109,7 +109,8 @@ impl Joined {
         &self.duplicates
     }
 
-    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points.
+    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points of
+    /// the sweep.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)

@@ -27,7 +27,7 @@ pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Byte position in the file of rows at which the next row begins.
+    /// Byte position in the file of rows at which the next row is written.
     end: u64,
     rows_file: File,
     times_file: File,
