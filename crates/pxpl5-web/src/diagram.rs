@@ -29,8 +29,8 @@ const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the messages that began after an instant, at most `most` messages. If there are more, only every n-th
-/// message is returned. Messages that still occupy a channel are included.
+/// Returns the ring messages that began after an instant, including messages that still occupy a channel. The result
+/// has at most `most` messages. If more messages began, only every n-th message is returned.
 pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     let record = stepper.record();
     let name = |node| record.ports().board(node).to_string();
@@ -115,8 +115,8 @@ mod tests {
         Session::new(&settings, &Files::default()).expect("known settings")
     }
 
-    /// TR94: first the graphics processors execute TRANSFORM, then renderers get commands, then renderers copy regions
-    /// to the frame buffers.
+    /// Tests the order of work in TR94: first the graphics processors execute TRANSFORM, then renderers get commands,
+    /// then renderers copy regions to the frame buffers.
     #[test]
     fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
         let mut session = session("rendering-control");
@@ -148,8 +148,9 @@ mod tests {
         all.as_array().expect("a list").iter().filter(|region| region["stage"] == stage).count()
     }
 
-    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region has
-    /// 20 triangles of 258 clocks, so drawing takes 129 us, and a look each 20 us finds the region.
+    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region
+    /// has 20 triangles of 258 clocks, so drawing takes 129 us. A test that reads the state every 20 us therefore finds
+    /// each region.
     #[test]
     fn a_region_is_copied_by_the_renderer_that_drew_it_and_where_it_was_drawn() {
         let settings = "pipeline=rendering-control\nscene=full-screen:20\nfields=60\n";

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Settings have the format of experiment files. The page and the command-line program therefore run the same
-//! experiment and get the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
+//! experiment and compute the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
 //! thread of the browser. Models and recorded motions that a visitor drops onto the page are passed as [`Files`].
 //! `scripts/site` builds the page. Building and testing this crate needs no browser.
 //!
@@ -79,7 +79,7 @@ impl WebMachine {
     }
 
     /// Adds poses to the motion of a head that the visitor moves (`head.motion=live.csv`). `rows` is a recording with
-    /// its header line. Its last row must not be earlier than the instant to which the machine runs next.
+    /// its header line. The last row of `rows` must not be earlier than the instant to which the machine runs next.
     ///
     /// # Errors
     ///
@@ -89,7 +89,7 @@ impl WebMachine {
         self.0.moved(rows).map_err(refused)
     }
 
-    /// Runs the machine for one `event`, `line` (a scanline) or `field`.
+    /// Runs the machine for one step. The step `of` is `event`, `line` (a scanline) or `field`.
     ///
     /// # Errors
     ///
@@ -123,14 +123,14 @@ impl WebMachine {
         look::boards(self.0.stepper()).to_string()
     }
 
-    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most`. If there are
-    /// more, only every n-th message is returned.
+    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
+    /// more messages began, only every n-th message is returned.
     #[must_use]
     pub fn messages(&self, after_ps: f64, most: usize) -> String {
         diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
     }
 
-    /// Returns the regions that renderers are copying to displays, as JSON.
+    /// Returns the regions that renderers are drawing or copying to displays, as JSON.
     #[must_use]
     pub fn regions(&self) -> String {
         diagram::regions(self.0.stepper()).to_string()
@@ -196,7 +196,7 @@ impl WebMachine {
     }
 
     /// Returns the 128 x 128 pixels of a renderer as bytes. Enabled pixels are green, and other pixels have the colours
-    /// in their memory. The result is empty before the first command.
+    /// in their memory. The result is empty before the renderer's first command.
     #[must_use]
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
         pictures::renderer(self.0.stepper(), renderer)
@@ -216,7 +216,8 @@ impl WebMachine {
         look::timeline(self.0.stepper(), u64::from(fields))
     }
 
-    /// Returns the parts of the latency of the last complete pictures, at most `most` pictures, as JSON.
+    /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
+    /// pictures.
     #[must_use]
     pub fn latencies(&self, most: usize) -> String {
         look::latencies(self.0.stepper(), most).to_string()

@@ -34,7 +34,8 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
 
 /// Returns a single bar with the mean parts of the latency, as SVG for a page.
 ///
-/// A frame marks the parts that the papers count as latency. The text is empty if the sum of the parts is not positive.
+/// A frame marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
+/// positive.
 #[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
     part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
@@ -72,7 +73,7 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
 }
 
 /// Horizontal range of the frame in chart units, from the left edge of the first published part to the right edge of
-/// the last.
+/// the last published part.
 struct Frame {
     from: f64,
     to: f64,

@@ -35,7 +35,7 @@ pub struct Bar {
 /// A row of a timeline, for a resource that works independently of other resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
-    /// Name on the left of the row.
+    /// Name of the resource, drawn on the left of the row.
     pub name: String,
     /// Bars, in the order of their start.
     pub bars: Vec<Bar>,
@@ -111,7 +111,7 @@ pub struct Arrow {
     pub end: Time,
 }
 
-/// A row of a drawing, with the lane if it is a row of boards.
+/// One end of an arrow: a row of the drawing, and the lane if the row belongs to boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
     /// The row of the tracker.

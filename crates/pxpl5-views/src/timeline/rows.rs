@@ -10,7 +10,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Returns all rows of a run, from the host's row to the row of the last surface.
+/// Returns all rows of a run from top to bottom: the host's row first, and the row of the last surface at the end.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -97,7 +97,8 @@ fn copy_bar(record: &Record, arrival: &Arrival, begin: Time) -> Bar {
     }
 }
 
-/// Returns the first line of a surface that a region fills. The picture may have fewer lines than the surface.
+/// Returns the first line of a surface that a region fills. If the picture has fewer lines than the surface, the line
+/// is scaled to the height of the surface.
 fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     let grid = &arrival.target.grid;
     let [_, top, _, _] = grid.rectangle(arrival.target.region);
@@ -105,7 +106,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Labels the bars that are halves of a picture. A picture has halves if the surface received both halves.
+/// Marks each bar as the top or bottom half of its picture, if the surface received both halves one after the other.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
