@@ -77,7 +77,7 @@ fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) 
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if work for one surface is also necessary for another surface. `None` stands for all surfaces.
+/// Returns true if two bars have a surface in common. `None` stands for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
