@@ -7,7 +7,7 @@
 //!
 //! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is printed
 //! for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this module,
-//! therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial lines once in 30
+//! therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports once in 30
 //! ms (TR94). Both maxima are assumed.
 
 use crate::figures::{Bench, FIGURES};

@@ -18,8 +18,8 @@
 //!   instruction cache.
 //! - `sphere` is the time of spheres without their bin entries: the mean over the scenes that have spheres.
 //!
-//! Each of `guard`, `entry` and `triangle` depends on the other two, so the measurement computes the three times one
-//! after the other, and repeats this until they converge.
+//! Each of `guard`, `entry` and `triangle` depends on the other two, so the measurement computes one time after the
+//! other. Repetitions make the three times converge.
 //!
 //! ```text
 //!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
@@ -99,7 +99,8 @@ pub struct CodeTimes {
     pub sphere_ns: f64,
     /// Time to write one entry into a bin.
     pub entry_ns: f64,
-    /// Additional time of a clipped triangle: the time to cut it, and to process all resulting triangles except one.
+    /// Additional time of a clipped triangle: the time to cut the triangle, and to process all resulting triangles
+    /// except one.
     pub guard_ns: f64,
     /// Time to begin a pass over the display list, without its structures: mean of the scenes' means.
     pub pass_ns: f64,
@@ -240,7 +241,7 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
-/// Fits `y = a p + b q` to rows of `([a, b], y)` by least squares, and returns `p`: the time of one item, such as a bin
+/// Fits `y = a p + b q` to rows of `([a, b], y)` by least squares. Returns `p`, the time of one item such as a bin
 /// entry. If all `b` are 0, only `p` is fitted.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     let mut sums = [0.0; 5];

@@ -7,8 +7,8 @@
 //! - A run that keeps statistics and its last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK
 //!   blocks`.
 //! - A tracked head adds `min(fields, JUDGED) ERRORS` to either value of `kept`.
-//! - `batch` and `blocks` are 0 except in frameless rendering. `blocks` is the number of blocks copied in a field,
-//!   limited by the ring.
+//! - `batch` is the number of blocks of pixels drawn with one head pose, and `blocks` the number copied in a field,
+//!   limited by the ring. Both are 0 except in frameless rendering.
 //!
 //! The constants of memory are measured: the memory peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
@@ -101,7 +101,7 @@ const PICTURE_S: f64 = 1.8e-4;
 const GP_S: f64 = 1.3e-5;
 /// Seconds to simulate a block of pixels in frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
-/// Seconds to transform a primitive for one eye. Each primitive is transformed when its head pose is first drawn.
+/// Seconds to transform a primitive for one eye. The primitives are transformed when a head pose is first drawn.
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;

@@ -69,7 +69,8 @@ pub struct Interval {
     pub one_at_a_time: [f64; 2],
     /// Minimum and maximum value of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
-    /// Interpretations that change the figure, each with the resulting value of the figure. The strongest comes first.
+    /// Interpretations that change the figure, each with the resulting value of the figure. The interpretation with the
+    /// greatest change comes first.
     pub rules: Vec<(String, f64)>,
     /// Minimum and maximum value of the figure over the random machines of the joint sample.
     pub joint: [f64; 2],
@@ -80,7 +81,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over all designs, as computed at the analytic level.
+    /// Returns the minimum and maximum of the figure over all three designs of experiments, as computed at the analytic
+    /// level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
@@ -102,8 +104,8 @@ const FITTED: [(&str, u64, (u64, u64)); 2] =
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
 /// Parameters of the i860 are left out. The analytic level uses formulas with the timing tables and executes no code,
-/// so an interval would wrongly suggest that these parameters never matter. At the cycle level they do matter. Here the
-/// range of `gp.triangle_ns` stands for their effect.
+/// so an interval would wrongly suggest that these parameters never matter. At the cycle level these parameters do
+/// matter. In the intervals, the range of `gp.triangle_ns` stands for the effect of these parameters.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));

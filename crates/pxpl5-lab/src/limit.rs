@@ -169,9 +169,8 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// For a model, each number of triangles needs a decimated scene, and building this scene takes as long at the
-    /// analytic level as at any other level. The hints therefore use a test scene of small triangles in place of the
-    /// model.
+    /// For a model, each number of triangles needs a decimated scene. Building this scene takes as long at the analytic
+    /// level as at any other level. The hints therefore use a test scene of small triangles in place of the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
@@ -199,7 +198,7 @@ impl LimitQuery {
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// Returns a number that grows with the ease of reaching the goal: the update rate, the negative latency, or the
+    /// Returns a number that is greater if the goal is easier to reach: the update rate, the negative latency, or the
     /// negative time of the first copy. Only the comparison of two numbers of triangles has a meaning.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;

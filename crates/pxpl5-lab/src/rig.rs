@@ -1,11 +1,12 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it detects the pendulum's low point. Frames alternate between dark and
-//! light, and the output of a D/A converter (the D/A line) changes when the program starts a frame. Frames therefore
-//! come on demand, the pipeline is not full, and the latency contains no wait for stages of an earlier frame. Under
-//! Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of the latency. Firmware
-//! that starts frames itself, such as Slats, switches the line when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when the host detects the pendulum's low point. Frames alternate between dark
+//! and light, and the output of a D/A converter (the D/A line) changes when the program starts a frame. Frames
+//! therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an earlier frame.
+//! Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of the latency.
+//! Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the pose of a
+//! frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from

@@ -66,7 +66,7 @@ pub enum SnapshotError {
         /// Description of the error in the text of the file.
         reason: String,
     },
-    /// The snapshot has a layout of another version.
+    /// The snapshot has a JSON layout of another version.
     #[error(
         "{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it"
     )]

@@ -31,8 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Simulated time after which a missing resource has caused an error. Programs reserve their memory before they first
-/// wait.
+/// Simulated time after which a missing resource has caused an error. This time suffices because programs reserve all
+/// memory before the first wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(

@@ -16,13 +16,13 @@
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
 //! - Two processes never write into one folder. The second process gets an error.
-//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, even if the file does
-//!   not select these quantities. Without these counts, a mean over few pictures looks like a mean over all.
+//! - Every row has the numbers of due pictures, of pictures not shown, and of evaluated pixels, even if the file
+//!   selects other quantities. Without these counts, a mean over few pictures looks like a mean over all.
 //!
 //! # Not modelled
 //!
 //! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only if each
-//! runs a different shard (part) of it.
+//! host runs a different shard (part) of the sweep.
 
 mod chunk;
 mod cost;

@@ -82,8 +82,8 @@ pub(crate) fn figures<'py>(
     python(py, &rows)
 }
 
-/// Runs all pipelines with the same settings and compares them. Returns a dictionary whose `pipelines` has one row for
-/// each pipeline.
+/// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
+/// row for each pipeline.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]

@@ -72,8 +72,8 @@ pub(crate) fn motion_of_text(
 #[pymethods]
 impl Motion {
     /// Creates a motion from its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``,
-    /// ``synthetic:SEED``, or the path of a recording. A motion that walks through the scene needs the scene, so its
-    /// name must be given to the experiment instead.
+    /// ``synthetic:SEED``, or the path of a recording. A motion that walks through the scene needs the scene. The name
+    /// of such a motion must be given to the experiment instead.
     ///
     /// Raises :class:`pxpl5.SettingError` with the expected and the found text.
     #[new]
@@ -266,7 +266,7 @@ impl Moving for CallableMotion {
 }
 
 /// Number of samples of a Python motion that go into the hash of the experiment. The samples are an eighth of a second
-/// apart. In the hash, they represent the function, whose code cannot be hashed.
+/// apart. In the hash, the samples represent the function, whose code cannot be hashed.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 

@@ -33,7 +33,7 @@ impl Outcome {
         Self { outcome: Mutex::new(Some(outcome)), results: OnceLock::new(), measures: measures.to_vec() }
     }
 
-    /// Returns the results, which are computed at the first call. If the scene is too heavy to be drawn in time, the
+    /// Returns the results, which are computed at the first call. If the scene is too heavy for the machine, the
     /// computation also searches for a number of triangles that can be drawn in time. This search can take some time.
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {

@@ -103,9 +103,9 @@ const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]
 impl Processor {
-    /// Creates a processor with a program. ``memory`` is the size of its memory in bytes: 8 MiB by default, as on a
-    /// board, and at most 1 GiB. The processor starts at ``entry``, a label or an address. The default is the label
-    /// ``start``.
+    /// Creates a processor with a program. ``memory`` is the size of the processor's memory in bytes: 8 MiB by default,
+    /// as on a board, and at most 1 GiB. The processor starts at ``entry``, a label or an address. The default is the
+    /// label ``start``.
     ///
     /// Raises :class:`pxpl5.SettingError` for a program that does not fit into memory, and for an unknown label.
     #[new]
@@ -212,7 +212,8 @@ impl Processor {
     }
 
     /// Returns a profile of the clocks as a dictionary: instructions, issue, bus_requests, page_misses,
-    /// instruction_misses, data_misses, and the clocks that the code after each label took.
+    /// instruction_misses, data_misses, clocks and by_label. The dictionary by_label has the clocks of the code after
+    /// each label.
     fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let profile = self.cpu.profile();
         let all = PyDict::new(py);

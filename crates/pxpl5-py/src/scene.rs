@@ -164,8 +164,8 @@ impl Scene {
         py.detach(|| self.scene.decimated(primitives.size())).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. A scene of closed
-    /// surfaces looks the same.
+    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. The picture of a
+    /// scene of closed surfaces does not change.
     fn culled(&self) -> Self {
         Self::of(scene::Scene::clone(&self.scene).culled())
     }

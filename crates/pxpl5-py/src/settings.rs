@@ -5,8 +5,8 @@ use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Settings of an experiment by path, as in an experiment file. The settings are checked together only when an
-/// experiment is created from them.
+/// Settings of an experiment by path, as in an experiment file. The combination of all settings is checked only when an
+/// experiment is created from the settings.
 #[pyclass(skip_from_py_object, module = "pxpl5._native")]
 #[derive(Clone)]
 pub(crate) struct Settings {

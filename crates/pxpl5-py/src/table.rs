@@ -100,7 +100,7 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// Returns the column of values for one key. If all values are truth values, integers or numbers, the column has this
-/// type, otherwise it has text.
+/// type. Otherwise the values become text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));

@@ -1,8 +1,9 @@
 //! A run as a trace for viewers, in the Perfetto trace format or as Chrome's JSON. The viewer ui.perfetto.dev opens
 //! both.
 //!
-//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write them. Tracks of messages and
-//! counters of the ring and the FIFOs need [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
+//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write the tracks. Tracks of
+//! messages and counters of the ring and the FIFOs need
+//! [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
 //!
 //! | group | tracks |
 //! |---|---|

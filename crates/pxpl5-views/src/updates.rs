@@ -35,8 +35,8 @@ impl Updates {
 
     /// Returns the update that a picture shows.
     ///
-    /// If a graphics processor samples the poses instead of the host, the result is the newest update that had arrived
-    /// at this processor when the processor sampled the picture's pose.
+    /// A graphics processor may sample the poses instead of the host. The result is then the newest update that had
+    /// arrived at this processor when the picture's pose was sampled.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);

@@ -28,7 +28,7 @@ pub(crate) fn catalog() -> Value {
     })
 }
 
-/// Splits a list in plain English, such as `optical, fastrak or ideal`, into its names.
+/// Splits an English list, such as `optical, fastrak or ideal`, into the single names.
 fn names(list: &str) -> Vec<&str> {
     list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "or").collect()
 }

@@ -46,7 +46,7 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     some.map(|(begin, from, to, words)| json!({"begin_ps": begin.0, "from": from, "to": to, "words": words})).collect()
 }
 
-/// Returns the regions that renderers are drawing, then the regions that they are copying to displays.
+/// Returns the regions that renderers are drawing, then the regions that renderers are copying to displays.
 ///
 /// Each region has its stage (`render` or `copy`), its renderer, the index of its surface, and a rectangle in pixels.
 /// `works` is false for a region whose renderer waits, for more commands or for the copy command.

@@ -31,8 +31,8 @@ pub use files::Files;
 use session::Session;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// Returns everything that a visitor can choose as JSON: pipelines, scenes, displays and motions, each with its name
-/// and a description.
+/// Returns, as JSON, the pipelines, scenes, displays and motions that a visitor can choose, each with a name and a
+/// description.
 #[wasm_bindgen]
 #[must_use]
 pub fn catalog() -> String {

@@ -135,8 +135,8 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Optio
 /// Colour of outlines (amber). No built-in scene uses this colour.
 const OUTLINE: [u8; 3] = [255, 196, 61];
 
-/// Threshold for edges. A pixel is an edge if the second difference between its depth and the depths of two neighbours
-/// is greater, in units of the lowest of 24 bits. Within a flat triangle, depth is linear on the screen, so that the
+/// Threshold for edges. A pixel is an edge if the second difference of depth across the pixel and two neighbours is
+/// greater. The unit is the lowest of 24 depth bits. Within a flat triangle, depth is linear on the screen, so that the
 /// second difference comes only from rounding.
 const BEND: i64 = 24;
 

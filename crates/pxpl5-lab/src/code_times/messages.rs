@@ -70,7 +70,7 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// Measures the messages of one board while it processes a scene.
+/// Measures the messages of one board while the board processes a scene.
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
@@ -94,7 +94,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
 ///
 /// - The slave receives the frame's head pose from the host.
 /// - The slave receives permission for EDIT and for TRANSFORM, and reports the end of each.
-/// - For each eye, the slave receives the token of every region and passes it on.
+/// - For each eye, the slave receives the token of every region and passes the token on.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     // The host's view, then the master's permission, then the slave's report.
@@ -137,8 +137,8 @@ fn token(
 }
 
 /// Executes the messages of one display field on a board under Slats. The board receives the head pose. The board then
-/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two
-/// chains of copy commands to all renderers.
+/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally, the board sends
+/// two chains of copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

@@ -24,9 +24,9 @@ const FIELD_PS: u64 = 16_683_333_333;
 /// Memory address at which display lists begin. The commands in messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of order messages. The messages order a strip (group of scan lines), a strip with its
-/// head pose, blocks of pixels with their head pose, and a field with two head poses for interpolation. The second
-/// number of each pair counts the words before the head poses.
+/// Sizes in words of four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
+/// head pose, blocks of pixels, and a field. An order of blocks has one head pose, and an order of a field has two head
+/// poses for interpolation. The second number of each pair counts the words before the head poses.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
@@ -50,8 +50,8 @@ pub struct StripTimes {
     /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
     /// interpolation on the screen, the second for interpolation in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Times to assemble four kinds of order messages. The messages order a strip (group of scan lines), a strip with
-    /// its head pose, blocks of pixels with their head pose, and a field with two head poses for interpolation.
+    /// Times to assemble four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
+    /// head pose, blocks of pixels, and a field that is interpolated between two head poses.
     pub order_ns: [f64; 4],
 }
 

@@ -59,10 +59,10 @@ impl MeanInterval {
     /// Computes the mean and its interval from one number for each seed, at a confidence between 0 and 1. The quantity
     /// must not be negative.
     ///
-    /// The interval is computed for the logarithm (delta method), so that its lower end stays positive. The interval
-    /// reaches from `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the result is the
-    /// symmetric interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the symmetric interval is
-    /// not cut.
+    /// The interval is computed for the logarithm of the mean (delta method), so that the lower end stays positive. The
+    /// interval reaches from `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the
+    /// result is the symmetric interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the
+    /// symmetric interval is not cut.
     #[must_use]
     pub fn of(values: &[f64], confidence: f64) -> Self {
         let symmetric = Self::of_signed(values, confidence);

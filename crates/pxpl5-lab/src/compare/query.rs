@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
-/// all observations of a run in memory to evaluate its errors in several ways.
+/// all observations of a run in memory to evaluate the errors of the run in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
 /// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
@@ -236,7 +236,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns the plan of the first row with the first seed, without a check of its length.
+    /// Returns the plan of the first row with the first seed, without a check of the number of fields.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
@@ -265,8 +265,8 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Checks that all seeds differ, that experiment files can hold them, and that the maximum number of seeds is not
-    /// below the number of seeds.
+    /// Checks three conditions: all seeds differ, experiment files can hold all seeds, and the maximum number of seeds
+    /// is not below the number of seeds.
     fn check_seeds(&self) -> Result<(), StudyError> {
         let mut sorted = self.seeds.clone();
         sorted.sort_unstable();

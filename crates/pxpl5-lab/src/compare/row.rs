@@ -76,8 +76,8 @@ pub struct ComparisonRow {
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
     /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
-    /// time from the measured pose to the arrival of its report. The second is the time from the start of an eye's
-    /// TRANSFORM to the swap.
+    /// time from the measurement of a pose to the arrival of the tracker's report. The second is the time from the
+    /// start of an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
     /// EDIT and the scan.

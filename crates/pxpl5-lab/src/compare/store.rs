@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  rows/rows.jsonl    header, then one line for each finished row
-//!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
+//!  rows/1-seen.png    last picture of the row in line 1 after the header, and the ideal picture
 //! ```
 //!
 //! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
@@ -35,7 +35,7 @@ pub(super) struct Header {
     pub(super) version: String,
     /// Names of all rows of the comparison.
     pub(super) rows: Vec<String>,
-    /// Keys and options with their values, and the hashes of the files that they name.
+    /// Keys and options with their values, and the hashes of the files that the values name.
     pub(super) settings: BTreeMap<String, String>,
     /// Hash of all effective settings of the first row, including the settings from presets.
     pub(super) config_hash: String,
@@ -116,7 +116,7 @@ impl CompareStore {
         self.found.len()
     }
 
-    /// Returns the row with this name, if an earlier process has finished it.
+    /// Returns the row with this name, if an earlier process has finished this row.
     #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)

@@ -45,7 +45,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan of the row. An error is returned as its message.
+    /// Runs one plan of the row. Returns an error as text.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
@@ -54,8 +54,8 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated: after a quarter of the run, and
-/// not before the end of the warm-up.
+/// Returns the first display period in which the rows of a comparison are evaluated. This period comes after a quarter
+/// of the run and after the warm-up.
 ///
 /// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {

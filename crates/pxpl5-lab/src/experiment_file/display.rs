@@ -12,14 +12,14 @@ pub(super) const NUMBERS: &str = "display.";
 /// Name of the preset that is used if the file sets display parameters but names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. The parameter has one name in the file and another name in the display's
-/// table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
+/// display's table of parameters (`parameter`).
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that the file may contain instead of a number, each with its number.
+    /// Words that the file may contain instead of a number, each with the number that the word stands for.
     words: &'static [(&'static str, u64)],
 }
 

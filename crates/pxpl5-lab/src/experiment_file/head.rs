@@ -1,4 +1,4 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster: the correction that the
+//! The tracked head of an experiment: its motion, tracker, predictor and raster. The raster is the correction that the
 //! display applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};

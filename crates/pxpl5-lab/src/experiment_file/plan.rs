@@ -71,7 +71,7 @@ pub struct Plan {
     pub title: Option<String>,
     /// Registry of the pipelines and displays that the experiment can name.
     pub registry: Arc<Registry>,
-    /// Pipeline, built from the settings that it reads from the file.
+    /// Pipeline, built with the values of the pipeline's keys in the file.
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion for searching the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,

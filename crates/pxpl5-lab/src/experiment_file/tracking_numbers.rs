@@ -1,4 +1,5 @@
-//! Parameters of trackers, predictors and the host's port. An experiment sets them by the keys `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's port. An experiment sets these parameters by keys of the form
+//! `tracking.table.name`.
 
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;

@@ -1,6 +1,7 @@
 //! Values with units in settings: `20us`, `16.7ms`, `60deg`, `640px`.
 //!
-//! A plain number has the unit that its key documents. A number with a unit is converted to that unit.
+//! A plain number has the unit that the documentation of the key states. A number with a unit is converted to the unit
+//! of the key.
 
 use super::tracking_numbers::tracking_parameters;
 use pxpl5_machine::{MachineConfig, Parameter};

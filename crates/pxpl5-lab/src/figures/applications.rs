@@ -86,8 +86,8 @@ impl Applications {
 
 /// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the result.
 ///
-/// `make` must not run work on other threads. While the calling thread waits for such work, it could take over other
-/// work that requests the same key, and deadlock.
+/// `make` must not run work on other threads. While the calling thread waits for such work, this thread could take over
+/// other work that requests the same key. The program would then be in a deadlock.
 fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());

@@ -13,7 +13,7 @@ use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
-/// photodiode. A bench may change this parameter.
+/// photodiode. The common settings of measurements ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed line

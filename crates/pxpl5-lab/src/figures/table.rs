@@ -8,7 +8,7 @@ use serde::Serialize;
 pub enum Basis {
     /// An independent check: nothing was chosen to reproduce the figure.
     Free,
-    /// A parameter was fitted to this figure, or derived from it.
+    /// A parameter was fitted to this figure, or derived from this figure.
     Fitted {
         /// Path of the fitted parameter, and the preset that holds its value.
         parameter: &'static str,

@@ -70,9 +70,9 @@ fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<Mac
     Ok(machine)
 }
 
-/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control it is the mean
-/// latency. Slats always has a latency of one field, so its quantity is the time from the beginning of a field to the
-/// first copy. The value is NaN if no picture was shown in time.
+/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control, the quantity is the
+/// mean latency. Slats always has a latency of one field. Under Slats, the quantity is therefore the time from the
+/// beginning of a field to the first copy. The value is NaN if no picture was shown in time.
 #[must_use]
 pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
     if summary.latencies_ms.is_empty() {

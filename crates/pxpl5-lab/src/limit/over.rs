@@ -105,7 +105,7 @@ impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
     /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// its sources allow.
+    /// the sources of the parameter allow.
     ///
     /// # Errors
     ///

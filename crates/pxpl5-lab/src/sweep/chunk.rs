@@ -1,4 +1,5 @@
-//! Simulates some points of a sweep within a time limit. This serves callers that distribute points themselves.
+//! Simulates some points of a sweep within a time limit. Callers that distribute points over computers need this
+//! function.
 
 use super::{Status, Sweep, SweepRow};
 use std::time::{Duration, Instant};

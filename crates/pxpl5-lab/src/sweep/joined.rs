@@ -148,8 +148,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. The block is extended until it holds a complete line, if the
-    /// file has one.
+    /// Reads the block that begins at a byte position. The block is extended until the block holds a complete line, if
+    /// the file has a complete line there.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;

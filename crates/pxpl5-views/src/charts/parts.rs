@@ -72,8 +72,8 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 
-/// Horizontal range of the frame in chart units, from the left edge of the first published part to the right edge of
-/// the last published part.
+/// Horizontal range of the frame in chart units, around the published parts: from the left edge of the first to the
+/// right edge of the last.
 struct Frame {
     from: f64,
     to: f64,

@@ -30,7 +30,8 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// Returns the row of a port that swaps independently: the data that it received and the pictures that it showed.
+/// Returns the row of a port that swaps independently: the data that the port received and the pictures that the port
+/// showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -63,8 +64,8 @@ fn has_many_surfaces(record: &Record) -> bool {
 /// Copies to a display, by picture and by part of the picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
-/// Returns the COPY bars of a surface or a port. A picture has one bar, or two if it arrived in two parts, one after
-/// the other.
+/// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
+/// parts, one after the other.
 fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let message = run.record().message_span();
     let mut parts = Parts::new();
@@ -134,7 +135,8 @@ fn join(times: &mut Vec<(Time, Time)>) {
     *times = joined;
 }
 
-/// Assigns each bar of a row to the first lane that is free at its time.
+/// Assigns each bar of a row to the first lane that is free when the bar begins. An overlap of at most `touching` is
+/// allowed.
 pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {
