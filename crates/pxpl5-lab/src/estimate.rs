@@ -1,14 +1,14 @@
 //! Estimates the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
 //! sweeps and Slurm jobs use these estimates.
 //!
-//! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`
+//! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
-//! - A run that keeps all observations has `kept = fields (FIELD + COPY copies)`.
-//! - A run that keeps statistics and its last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK
-//!   blocks`.
+//! - `PICTURES` counts only for a run that computes all pixels.
+//! - A run that keeps all observations has `kept = fields (FIELD + COPY blocks)`. A run that keeps statistics and its
+//!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
 //! - A tracked head adds `min(fields, JUDGED) ERRORS` to either value of `kept`.
-//! - `batch` is the number of blocks of pixels drawn with one head pose, and `blocks` the number copied in a field,
-//!   limited by the ring. Both are 0 except in frameless rendering.
+//! - `batch` is the number of blocks of pixels drawn with one head pose, and `blocks` the greatest number that the ring
+//!   can carry in a field. Both are 0 except in frameless rendering.
 //!
 //! The constants of memory are measured: the memory peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
@@ -16,8 +16,10 @@
 //! LOAD_S eyes primitives + JUDGED_FIELD_S fields`
 //!
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
-//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives.
-//! - `BLOCK_S` counts only for pipelines that draw blocks.
+//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives. At the cycle level, the time of a
+//!   picture also contains `PRIMITIVE_AS_CODE_S primitives`.
+//! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number that the experiment's processors
+//!   can send in a field.
 //! - `JUDGED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
@@ -382,7 +384,7 @@ mod tests {
         assert!(Work { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
     }
 
-    /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two.
+    /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two studies.
     const STUDIES: [(Study, f64, f64); 11] = [
         (Study::Figures, 36.1, 280.0),
         (Study::Readings { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),

@@ -82,13 +82,13 @@ pub struct ExperimentFile {
 }
 
 impl ExperimentFile {
-    /// Returns a file without settings that can name the built-in pipelines and displays.
+    /// Creates an experiment file without settings. The settings can name the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Returns a file without settings that can name the pipelines and displays of a registry.
+    /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();

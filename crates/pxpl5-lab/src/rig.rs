@@ -145,7 +145,7 @@ fn away() -> Pose {
 }
 
 /// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
-/// from the wall. The wall's two triangles are the minimal data set.
+/// from the wall. The wall has two triangles, the smallest number for a rectangle.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };

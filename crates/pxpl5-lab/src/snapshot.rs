@@ -167,7 +167,8 @@ impl Snapshot {
 
     /// Creates a snapshot of a run of an experiment that was built in code.
     ///
-    /// The file does not describe such an experiment. [`Snapshot::resume`] needs the same experiment again.
+    /// The file of the snapshot does not describe such an experiment, so the caller must give the same experiment to
+    /// [`Snapshot::resume`].
     ///
     /// # Errors
     ///

@@ -107,7 +107,7 @@ impl Sweep {
     }
 }
 
-/// Returns the quantities of a row: the quantities of the plan, then the counts without which no mean can be compared
+/// Returns the quantities of a row: the quantities of the plan, then the counts that are necessary to compare means
 /// ([`Measure::counts`]).
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();

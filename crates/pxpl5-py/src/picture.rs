@@ -143,7 +143,7 @@ pub(crate) fn picture_of_parts(
 
 /// Decodes the bytes of a PNG file and returns the picture. The picture does not get the texts of the file.
 ///
-/// Raises :class:`pxpl5.SettingError` for bytes that are no PNG.
+/// Raises :class:`pxpl5.SettingError` for bytes that are not a PNG file.
 #[pyfunction]
 pub(crate) fn picture_of_png(py: Python<'_>, bytes: &[u8]) -> PyResult<Picture> {
     let picture = py.detach(|| image::load_from_memory_with_format(bytes, image::ImageFormat::Png));

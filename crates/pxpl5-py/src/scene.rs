@@ -351,7 +351,8 @@ struct Rest {
     warnings: Vec<String>,
 }
 
-/// A structure of a scene. Ranges are pairs of the first index and the index after the last index.
+/// A structure of a scene, as `pickle` stores the structure. A range is a pair of the first index and the index after
+/// the last index.
 #[derive(Serialize, Deserialize)]
 struct StructureState {
     name: String,

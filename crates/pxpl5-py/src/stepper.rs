@@ -147,7 +147,7 @@ fn board_named(name: &str) -> PyResult<Board> {
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Stepper {
     pub(crate) thread: MachineThread,
-    /// Functions of Python that the run calls.
+    /// Python functions that the run calls, such as the function of the head's motion.
     pub(crate) checks: PythonFunctions,
     pub(crate) measures: Vec<pxpl5::Measure>,
 }

@@ -249,7 +249,7 @@ impl Table {
     /// Creates a table from dictionaries, one for each row. Keys of nested dictionaries are joined with a point. Lists
     /// become JSON text. ``definitions`` maps names of columns to descriptions.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a row that is no dictionary, or a value that no column can have.
+    /// Raises :class:`pxpl5.SettingError` for a row that is not a dictionary, or a value that no column can have.
     #[staticmethod]
     #[pyo3(signature = (rows, definitions = None))]
     fn from_rows<'py>(

@@ -79,7 +79,7 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// [`FilmError`]. The file is then incomplete.
+    /// Returns [`FilmError`]. The file is then incomplete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;

@@ -1,5 +1,5 @@
 //! Data for the block diagram and the guided tours of the page. The data are stages of processors, messages, regions
-//! that are being copied, and the age of the shown picture.
+//! that are being drawn or copied, and the age of the shown picture.
 
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::Board;

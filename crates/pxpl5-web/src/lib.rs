@@ -188,8 +188,8 @@ impl WebMachine {
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
-    /// percentage of pixels that differ. The object also has the mean over all pixels of the largest difference of any
-    /// colour, in per cent. The result is `null` without an ideal picture.
+    /// percentage of pixels that differ, and the mean difference over all pixels in per cent. The difference at a pixel
+    /// is the largest of the differences of red, green and blue. The result is `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
@@ -267,7 +267,8 @@ impl WebVolume {
         self.0.size().to_vec()
     }
 
-    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue.
+    /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
+    /// display has one bit for each colour.
     #[must_use]
     pub fn slice(&self, number: u32) -> Vec<u8> {
         self.0.slice(number)

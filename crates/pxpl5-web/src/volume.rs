@@ -35,8 +35,8 @@ impl Volume {
         [self.frame.planes.slices(), width, height]
     }
 
-    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue. A slice
-    /// that does not exist is black.
+    /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
+    /// display has one bit for each colour. A slice that does not exist is black.
     pub(crate) fn slice(&self, number: u32) -> Vec<u8> {
         let [slices, width, height] = self.size();
         let lit = |x, y| if number < slices { self.frame.planes.pixel(number, x, y) } else { 0 };

@@ -1,4 +1,4 @@
-//! The length of a comparison along a recording.
+//! The number of fields of a comparison in which the head replays a recording.
 
 use super::query::CompareQuery;
 use crate::error::StudyError;

@@ -36,8 +36,8 @@ const UNITS: [(&str, &str); 8] = [
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. The text then stays
-/// unchanged.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases the text is
+/// used unchanged.
 ///
 /// # Errors
 ///

@@ -94,7 +94,7 @@ fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> R
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 
-/// Returns the error of position at a pixel in degrees.
+/// Returns the pixel error at one pixel of the evaluated picture, in degrees.
 fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
     let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
     let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));

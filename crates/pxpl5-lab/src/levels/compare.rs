@@ -29,8 +29,8 @@ const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 /// compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured. The experiments run one after the other, with nothing else at the
-/// same time.
+/// Number of experiments whose speed is measured. The experiments run one after the other, and the host does no other
+/// work at the same time.
 const TIMED: u64 = 16;
 
 /// Parameters of a comparison of levels of modelling.

@@ -6,7 +6,7 @@ use crate::markup::Element;
 use crate::svg::{Units, caption, rectangle, segment};
 use pxpl5_wire::display::Surface;
 
-/// Draws a legend of two lines. `x` and `y` are the left end of the first line's baseline.
+/// Draws a legend of two lines. `x` and `y` are the coordinates of the left end of the first line's baseline.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {
     let mut first = Line { out, x, y };
     for (stage, title) in STAGES.iter().filter(|(stage, _)| timeline.bars().any(|bar| bar.stage == *stage)) {
