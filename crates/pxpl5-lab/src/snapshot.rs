@@ -335,7 +335,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
+    /// Returns a plan (checked experiment), a snapshot of the run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");

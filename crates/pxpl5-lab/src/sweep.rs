@@ -107,8 +107,8 @@ impl Sweep {
     }
 }
 
-/// Returns the quantities of a row: the quantities of the plan, then the counts that are necessary to compare means
-/// ([`Measure::counts`]).
+/// Returns the quantities of a row: the quantities that the experiment file selects, then the counts that are necessary
+/// to compare means ([`Measure::counts`]).
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();
     all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));

@@ -46,8 +46,9 @@ impl CompareQuery {
     }
 }
 
-/// Returns the number of whole display periods in the recording of a plan's head. Returns `None` if the motion is not a
-/// recording, if the recording is repeated without end, or if the display cannot be built.
+/// Returns the number of whole display periods in the recording that moves the head of a plan (checked experiment).
+/// Returns `None` if the motion is not a recording, if the recording is repeated without end, or if the display cannot
+/// be built.
 fn recorded_fields(plan: &Plan) -> Option<u64> {
     let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
     let ends = Time(head.motion().moves_until_ps()?);

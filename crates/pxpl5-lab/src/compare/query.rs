@@ -203,15 +203,15 @@ impl CompareQuery {
         Ok(self.identity()?.1)
     }
 
-    /// Returns the plan of the first row with the first seed, and the names of all rows.
+    /// Returns the plan (checked experiment) of the first row with the first seed, and the names of all rows.
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
         Ok((plan, rows.into_iter().map(|row| row.name).collect()))
     }
 
-    /// Returns the plan of each row with the first seed, from which the cost can be estimated. Rows that cannot run are
-    /// left out.
+    /// Returns the plan (checked experiment) of each row with the first seed, from which the cost of the comparison can
+    /// be estimated. Rows that cannot run are left out.
     ///
     /// # Errors
     ///
@@ -236,7 +236,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns the plan of the first row with the first seed, without a check of the number of fields.
+    /// Returns the plan (checked experiment) of the first row with the first seed. The number of fields is not checked.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
@@ -247,7 +247,8 @@ impl CompareQuery {
         Ok(first.plan(&self.shared, seed)?)
     }
 
-    /// Returns the plan of the first row with the first seed, to check the shared settings.
+    /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the plan (checked
+    /// experiment) of the first row with the first seed.
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {

@@ -35,7 +35,8 @@ pub(super) struct Trial {
 }
 
 impl ComparedPipeline {
-    /// Returns the plan of one run: the shared settings, the settings of this row, and a seed.
+    /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
+    /// seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -45,7 +46,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan of the row. Returns an error as text.
+    /// Runs one plan (checked experiment) of the row. Returns an error as text.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);

@@ -77,7 +77,7 @@ impl HeadChoice {
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// Returns the head with its tracker and predictor. All runs of a plan share this head.
+    /// Returns the head with its tracker and predictor. All runs of one checked experiment share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)

@@ -1,4 +1,4 @@
-//! The checked plan of one experiment.
+//! The plan of one experiment: all settings, with values that were checked together.
 
 use super::head::HeadChoice;
 use super::hmd;

@@ -1,4 +1,4 @@
-//! Converts a plan to the text of a complete experiment file.
+//! Converts a plan (checked experiment) to the text of a complete experiment file.
 
 use super::hmd;
 use super::motion::PathChoice;

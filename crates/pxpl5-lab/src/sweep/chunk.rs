@@ -1,5 +1,5 @@
-//! Simulates some points of a sweep within a time limit. Callers that distribute points over computers need this
-//! function.
+//! Simulates some points of a sweep within a time limit. Programs that distribute the points of a sweep over computers
+//! call this module.
 
 use super::{Status, Sweep, SweepRow};
 use std::time::{Duration, Instant};

@@ -9,7 +9,7 @@ use crate::estimate::{Estimate, Work};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to build a point's plan, its scene and its row.
+/// Seconds to check the settings of a point, to build the scene, and to write the row.
 const POINT: f64 = 3e-3;
 
 /// Memory in bytes of a point that simulates nothing.

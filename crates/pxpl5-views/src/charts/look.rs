@@ -20,7 +20,7 @@ pub(super) struct Look {
     pub(super) colour: RGBColor,
     /// Height of text in drawing units.
     pub(super) em: u32,
-    /// True if the marker is hollow, which is drawn as a wide ring.
+    /// True if the marker is hollow. A hollow marker is a wide ring.
     is_hollow: bool,
 }
 
