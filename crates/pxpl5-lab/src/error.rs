@@ -28,7 +28,7 @@ pub enum StudyError {
     /// The query has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// The registry has no pipeline that is to be compared.
+    /// The registry has no pipeline that takes part in comparisons.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
     /// A row in the query does not exist.
@@ -55,7 +55,7 @@ pub enum StudyError {
     Seeds {
         /// The expected seeds, in words.
         expected: String,
-        /// The seed or the number of seeds in the query.
+        /// The unusable seed, or the unusable number of seeds, in the query.
         found: u64,
     },
     /// A file of finished rows cannot be read or written.
@@ -98,7 +98,8 @@ pub enum StudyError {
     /// The settings of the tracker are invalid.
     #[error(transparent)]
     Tracker(#[from] HeadError),
-    /// The tracker reported no low point of the pendulum, or the photodiode detected no bright pixel.
+    /// The pendulum rig gave no measurement: the tracker reported no low point of the pendulum, or the photodiode
+    /// detected no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.

@@ -65,7 +65,7 @@ pub(crate) struct Setting {
     pub(crate) folder: PathBuf,
 }
 
-/// Name of the head motion that takes its seed from the run.
+/// Name of the head motion whose seed is the seed of the run.
 const SYNTHETIC: &str = "synthetic";
 
 /// The settings of an experiment by path. Each setting was read, but the combination of all settings is not yet
@@ -82,13 +82,13 @@ pub struct ExperimentFile {
 }
 
 impl ExperimentFile {
-    /// Returns a file without settings that can name the built-in pipelines and displays.
+    /// Creates an experiment file without settings. The settings can name the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Returns a file without settings that can name the pipelines and displays of a registry.
+    /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();
@@ -224,8 +224,8 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Returns true if the head moves differently for each seed. This is the case for the synthetic motion without a
-    /// seed of its own.
+    /// Returns true if the head moves differently for each seed. The head does so for the motion `synthetic` if the
+    /// setting states no seed for the motion.
     ///
     /// # Errors
     ///
@@ -292,7 +292,7 @@ impl ExperimentFile {
         self.settings.extend(other.settings);
     }
 
-    /// Returns true if the file describes a sweep.
+    /// Returns true if the file describes a sweep (one experiment at many points of a parameter space).
     #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
@@ -305,8 +305,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that it
-/// is not lost.
+/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that the
+/// result contains the table.
 fn flat(
     path: String,
     value: Value,

@@ -1,7 +1,7 @@
 //! The manifest of an output folder, which lists the files of the last command that wrote there.
 //!
-//! A folder may hold files of several runs and files of the user. The manifest distinguishes them. Readers trust only
-//! files that are listed and unchanged. The next run removes the listed files that it does not write again.
+//! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers trust
+//! only files that are listed and unchanged. The next run removes each listed file that the run does not write again.
 
 use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
@@ -85,8 +85,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name in the manifest of a sweep. Its rows may be the work of hours, so other commands never replace
-    /// them.
+    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so other commands never
+    /// replace these rows.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.

@@ -66,7 +66,7 @@ pub enum SnapshotError {
         /// Description of the error in the text of the file.
         reason: String,
     },
-    /// The snapshot has a layout of another version.
+    /// The snapshot has a JSON layout of another version.
     #[error(
         "{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it"
     )]
@@ -167,7 +167,8 @@ impl Snapshot {
 
     /// Creates a snapshot of a run of an experiment that was built in code.
     ///
-    /// The file does not describe such an experiment. [`Snapshot::resume`] needs the same experiment again.
+    /// The file of the snapshot does not describe such an experiment, so the caller must give the same experiment to
+    /// [`Snapshot::resume`].
     ///
     /// # Errors
     ///
@@ -334,7 +335,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
+    /// Returns a plan (checked experiment), a snapshot of the run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");

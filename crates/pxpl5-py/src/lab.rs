@@ -82,8 +82,8 @@ pub(crate) fn figures<'py>(
     python(py, &rows)
 }
 
-/// Runs all pipelines with the same settings and compares them. Returns a dictionary whose `pipelines` has one row for
-/// each pipeline.
+/// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
+/// row for each pipeline.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -115,7 +115,9 @@ pub(crate) fn compare<'py>(
 ///
 /// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
 /// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
-/// ``fields`` is the length of each run.
+/// ``first_miss`` is the smallest tried number that misses the goal. ``island`` is the largest tried number above
+/// first_miss that reaches the goal. From ``unbroken_from`` on, all numbers up to ``triangles`` were tried. ``fields``
+/// is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -168,8 +170,10 @@ pub(crate) fn limit<'py>(
 /// Finds the values of a setting with which an experiment reaches a goal. Returns a dictionary with over, goal, values,
 /// fields, least, most, reached, tried, missed_at and because.
 ///
-/// ``low`` and ``high`` are the ends of the range that is searched. Without them the range of the setting's sources is
-/// searched. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
+/// ``low`` and ``high`` are the ends of the range that is searched. Without these two arguments, the search covers the
+/// range that the sources of the setting allow. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
+/// ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
+/// this value. ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
 #[pyfunction]
@@ -217,11 +221,11 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. More values
-/// move the end of the progress bar.
+/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. If a search
+/// tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
-/// Whole numbers below this limit are exact as real numbers.
+/// Limit below which every whole number is exact as a real number.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
@@ -302,8 +306,8 @@ pub(crate) fn rig<'py>(
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is
-/// recorded in the repository. Otherwise the errors are measured anew over this number of random experiments, and with
-/// ``speeds`` also the speeds. Returns the record as a dictionary.
+/// recorded in the repository. With ``experiments``, the errors are measured anew over this number of random
+/// experiments. If ``speeds`` is true, the simulation speeds are measured too. Returns the record as a dictionary.
 ///
 /// Raises :class:`pxpl5.RunError` if an experiment fails.
 #[pyfunction]
@@ -329,7 +333,9 @@ pub(crate) fn levels<'py>(
 
 /// Ranks the interpretations of the papers' open questions by their fit to the figures of Rendering Control. The best
 /// ``best`` interpretations are also simulated with events. ``seeds`` and ``frames`` are the size of the fly-throughs.
-/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent.
+/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent. ``left_out`` predicts each
+/// figure by the interpretation that fits all other figures best. ``as_good`` is the number of interpretations with the
+/// same mean error as the best, within the rounding of the printed digits.
 ///
 /// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
 #[pyfunction]

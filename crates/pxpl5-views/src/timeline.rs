@@ -1,8 +1,8 @@
 //! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8).
 //!
 //! Each independent resource has a row, and time runs to the right. Retraces and the dependencies of one picture are
-//! drawn too. [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends only on simulated
-//! time, so it is the same on every host.
+//! drawn too. [`Timeline::of`] collects the observations of a run, and [`svg`] draws the timeline. A drawing depends
+//! only on simulated time and is therefore the same on every host.
 //!
 //! | row | bars |
 //! |---|---|

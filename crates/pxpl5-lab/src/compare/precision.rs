@@ -1,4 +1,5 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that this width needs.
+//! The precision that a comparison requires, which is the greatest width of the interval of a mean error. The module
+//! also estimates the number of seeds that this precision needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;
@@ -13,7 +14,7 @@ pub enum Precision {
     Pixels(f64),
 }
 
-/// Goal of a comparison that adds seeds to a row until the interval of its mean error is narrow enough.
+/// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
     /// Greatest width of the interval.

@@ -35,7 +35,8 @@ pub(super) struct Trial {
 }
 
 impl ComparedPipeline {
-    /// Returns the plan of one run: the shared settings, the settings of this row, and a seed.
+    /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
+    /// seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -45,7 +46,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan of the row. An error is returned as its message.
+    /// Runs one plan (checked experiment) of the row. Returns an error as text.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
@@ -54,9 +55,10 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated: after a quarter of the run.
+/// Returns the first display period in which the rows of a comparison are evaluated. This period comes after a quarter
+/// of the run and after the warm-up.
 ///
-/// All rows are thus evaluated over the same periods, although some start up later than others.
+/// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
@@ -93,8 +95,9 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
-/// get their orientation at scan-out. Other pictures are drawn for the orientation of their pose.
+/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. For cube
+/// faces, this orientation is chosen at scan-out. Any other picture shows the orientation of the pose for which the
+/// picture was drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if !outcome.pipeline().draws_faces() {
         return Budget::totals_ms(outcome);
@@ -102,8 +105,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the prediction intervals in milliseconds. Each interval reaches from the newest measurement behind a head
-/// pose to the instant for which the picture with this pose is drawn.
+/// Returns the prediction intervals in milliseconds. Each interval begins at the newest measurement from which a head
+/// pose was predicted. The interval ends at the instant for which the picture with this pose is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

@@ -9,17 +9,17 @@ use pxpl5_wire::display::DisplayConfig;
 /// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";
 
-/// Name of the preset that display parameters change if the file names no preset.
+/// Name of the preset that is used if the file sets display parameters but names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. The parameter has one name in the file and another name in the display's
-/// table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
+/// display's table of parameters (`parameter`).
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that the file may contain instead of a number, each with its number.
+    /// Words that the file may contain instead of a number, each with the number that the word stands for.
     words: &'static [(&'static str, u64)],
 }
 
@@ -141,7 +141,7 @@ fn unit_text(key: &NumberKey) -> String {
     }
 }
 
-/// Returns the range of a display parameter in the unit of the experiment file.
+/// Returns the range of a display parameter in the unit of the experiment file, for error messages.
 fn limits(key: &NumberKey, table: &dyn ParameterTable) -> String {
     let info = table.infos().iter().find(|info| info.name == key.parameter);
     let text = |value: Number| match value {

@@ -1,4 +1,5 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster of its display.
+//! The tracked head of an experiment: its motion, tracker, predictor and raster. The raster is the correction that the
+//! display applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
@@ -76,7 +77,7 @@ impl HeadChoice {
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// Returns the head with its tracker and predictor. All runs of a plan share this head.
+    /// Returns the head with its tracker and predictor. All runs of one checked experiment share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)

@@ -153,7 +153,7 @@ fn is_key(registry: &Registry, path: &str) -> bool {
     keys(registry).iter().any(|key| key.path == path)
 }
 
-/// Returns true if the path is a parameter of a machine with some registered display.
+/// Returns true if the path is a parameter of a machine with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
     parameters(registry).iter().any(|known| known == path)

@@ -1,4 +1,4 @@
-//! The document ACCURACY.md, generated from the figures.
+//! The document ACCURACY.md, generated from the published figures and the model's values.
 
 use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, Spread, published};
@@ -26,7 +26,8 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-/// Minimum difference in percent between the timing table and executed code for which a figure is listed.
+/// Minimum change of a figure, in percent, for which the document lists the figure. The change is caused by times of
+/// executed code in place of the timing table.
 const MOVED_PERCENT: f64 = 0.05;
 
 /// Writes the figures that change when the times of executed code are used. Also writes the reason why these times are

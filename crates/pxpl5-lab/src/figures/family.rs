@@ -35,7 +35,8 @@ const FIELD_MS: f64 = 1001.0 / 60.0;
 
 /// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
-/// Number of fields from the start that all runs of experiment E1 have in common.
+/// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
+/// number must be the same for all runs.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
@@ -84,8 +85,8 @@ impl FigureFamily {
 }
 
 /// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control.
-/// There the head looks at the triangles all the time, because triangles out of sight are not drawn.
+/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
+/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();

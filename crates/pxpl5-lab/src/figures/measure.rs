@@ -28,8 +28,8 @@ pub struct Bench {
     /// Level of modelling at which every figure is measured.
     pub level: Level,
     /// Parameters, by path, that differ from the presets, with their values. A path that begins with a preset's name
-    /// and a colon changes only that preset. Times of PPHIGS code do not change the machines that run Slats.
-    /// [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
+    /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
+    /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
     /// Number of seeds of the head motion in the experiment of figure 7.
     pub seeds: u64,
@@ -194,7 +194,7 @@ impl Bench {
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Measures figure 3: the latency if everything except COPY takes no time.
+    /// Measures figure 3: the latency if all work except COPY takes no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -218,8 +218,9 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line. The rig's measurement
-    /// does not depend on the level of modelling or on the definition of latency samples.
+    /// Measures figure 17 with the photodiode on the first, the assumed and the last line of the screen, unless the
+    /// settings choose one line. The rig's measurement does not depend on the level of modelling or on the definition
+    /// of latency samples.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
@@ -269,8 +270,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds is divided by
-    /// `seeds_of_one`.
+    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds in the settings is
+    /// divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
@@ -311,7 +312,7 @@ impl Bench {
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
-    /// Returns the experiment of a fly-through. Its length allows two display fields per frame (30 Hz). If frames take
+    /// Returns the experiment of a fly-through. The run has two display fields for each frame (30 Hz). If frames take
     /// longer, the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
@@ -355,8 +356,8 @@ impl Bench {
     }
 }
 
-/// Measures figure 8: the number of bin entries of one pass over each scene. The scene is seen from poses along its own
-/// head motion.
+/// Measures figure 8: the number of regions that a triangle touches, which is the number of bin entries per visible
+/// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {

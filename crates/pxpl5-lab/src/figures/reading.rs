@@ -70,11 +70,11 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules of TR94 alone, on a machine where nothing delays them. The theory behind figures 3 and 5 assumes this
-    /// interpretation.
+    /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
+    /// theory behind figures 3 and 5 assumes this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// Returns the interpretations that differ from the usual interpretation in the answer to exactly one question.
+    /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
@@ -161,8 +161,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns copies of each interpretation, one for each possible answer to one question. `answer` sets an answer in an
-/// interpretation.
+/// Returns several copies of each interpretation, one copy for each possible answer to one question. The function
+/// `answer` sets the answer in a copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

@@ -96,7 +96,7 @@ pub struct OverLimit {
 /// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
-    /// Closeness of the result to the goal. A greater score is better.
+    /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
     score: f64,
     because: Option<String>,
 }
@@ -105,7 +105,7 @@ impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
     /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// its sources allow.
+    /// the sources of the parameter allow.
     ///
     /// # Errors
     ///

@@ -30,8 +30,8 @@ pub struct Hints {
     pub doubtful: Vec<u32>,
 }
 
-/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. Above the
-/// result, the search looks equally far for sizes that reach the goal.
+/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. The search
+/// also tries equally many sizes above the result, because some of these may reach the goal.
 const LOOK: u32 = 60;
 
 /// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer to
@@ -194,7 +194,7 @@ fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss. Their number is the same as below the limit.
+/// Returns the sizes to try above the first miss. As many sizes are tried above the limit as directly below the limit.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;

@@ -17,7 +17,7 @@ pub struct LeaveOneOut {
     pub chosen: Reading,
     /// The chosen interpretation in words.
     pub words: String,
-    /// Relative error in percent of the prediction for the figure.
+    /// Relative error, in percent, of the figure's value under the chosen interpretation.
     pub error_percent: f64,
 }
 
