@@ -41,7 +41,7 @@ def volume_keys() -> list[str]:
 
 
 def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table:
-    """The figures of the SpatialGL paper beside the model's: a row for each with expected and computed value and standing.
+    """The figures of the SpatialGL paper beside the model's: a row for each with published and simulated value.
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """

@@ -12,7 +12,7 @@ mod row;
 mod rows;
 mod rules;
 
-pub use definitions::{Definition, SEGMENTS, definitions};
+pub use definitions::{SEGMENTS, definitions};
 pub use document::{interpretations as interpretations_text, markdown, missed, table};
 pub(crate) use experiments::looking_at;
 pub use experiments::{
@@ -25,18 +25,19 @@ pub use interpretations::{
     Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
 };
 pub use lens::straight_edge;
-pub use row::{Row, Standing};
+pub use row::{limit, row, shape, verdict};
 pub use rows::rows;
 pub use rules::Rules;
 
 use crate::error::WalkError;
+use pxpl5_sim::figures::FigureRow;
 
 /// Runs all experiments and returns them with the rows of the comparison.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiments::run`].
-pub fn all() -> Result<(Experiments, Vec<Row>), WalkError> {
+pub fn all() -> Result<(Experiments, Vec<FigureRow>), WalkError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);
     Ok((experiments, rows))

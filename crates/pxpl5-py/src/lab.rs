@@ -49,13 +49,13 @@ pub(crate) fn figure<'py>(
     let measured =
         attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
-    python(py, &row(&FigureRow::new(figure, measured)))
+    python(py, &row(&figure.row(measured)))
 }
 
 fn row(row: &FigureRow) -> serde_json::Value {
     let mut value = serde_json::to_value(row).unwrap_or_default();
     if let Some(object) = value.as_object_mut() {
-        object.insert("misses".to_owned(), row.misses().into());
+        object.insert("misses".to_owned(), (!row.is_met).into());
         let [low, high] = row.interval.map_or([None, None], |[low, high]| [Some(low), Some(high)]);
         object.insert("low".to_owned(), low.into());
         object.insert("high".to_owned(), high.into());

@@ -32,6 +32,7 @@
 
 mod clock;
 mod context;
+pub mod figures;
 mod heap;
 pub mod parameters;
 mod queue;
