@@ -3,7 +3,7 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, WalkWork};
-use crate::leaves::{leaves, plain};
+use crate::numbers::plain;
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::terminal::warn;
@@ -12,6 +12,7 @@ use pxpl5::arp::Plan;
 use pxpl5::arp::address_recalculation::{ArpConfig, Lens};
 use pxpl5::arp::pictures::Picture;
 use pxpl5::scene::{Placement, Scene};
+use pxpl5::sweep::leaves;
 use pxpl5::views::png_bytes;
 use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use pxpl5_sim::parameters::text_of;
