@@ -1,7 +1,7 @@
 //! Tests of the papers' figures: fitted numbers, checked numbers, and the generated document.
 
 use pxpl5_arp::figures::{Experiments, RATE_FITTED, RATES_HZ, Rules, Situation, all, definitions, markdown, verdict};
-use pxpl5_arp::pictures::{OF_FIGURES, Picture, all as all_pictures};
+use pxpl5_arp::pictures::{ArpPicture, OF_FIGURES, all as all_pictures};
 use pxpl5_sim::figures::{Basis, FigureRow};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -180,7 +180,7 @@ fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() 
     let names: BTreeSet<&str> = pictures
         .iter()
         .map(|picture| match picture {
-            Picture::Pixels(name, _) | Picture::Drawing(name, _) => name.as_str(),
+            ArpPicture::Pixels(name, _) | ArpPicture::Drawing(name, _) => name.as_str(),
         })
         .collect();
     for (experiment, _, expected) in OF_FIGURES {

@@ -3,7 +3,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::whole;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
@@ -66,7 +66,7 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let fields = args.passes * FIELDS_OF_PASS;
-    args.budget.admit(&Work { fields, ..Work::of(&plan, &*plan.load_scene()?, true) })?;
+    args.budget.admit(&RunWork { fields, ..RunWork::of(&plan, &*plan.load_scene()?, true) })?;
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
     // The result is printed even if both sides disagree.
     print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;

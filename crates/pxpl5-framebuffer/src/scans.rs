@@ -1,8 +1,8 @@
 //! Record of the fields that showed a buffer. The record tells which lines were shown before they were overwritten.
 
 use crate::region::RegionWrite;
-use crate::video::Video;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::Video;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 

@@ -34,7 +34,7 @@ pub use heads::PHOTODIODE_LINE;
 pub use measure::Bench;
 pub use measured::FigureValue;
 pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
-pub use reading::{FieldCount, ROOM, Reading, Samples};
+pub use reading::{FieldCount, LatencySamples, ROOM, Reading};
 pub use row::{MISS_PERCENT, mean_error_percent};
 pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
 pub use topics::figure_groups;

@@ -8,4 +8,4 @@ mod row;
 mod table;
 
 pub use row::{Basis, Definition, Detail, FigureRow, around};
-pub use table::{Column, significant, table};
+pub use table::{TableColumn, significant, table};

@@ -10,9 +10,9 @@ mod row;
 mod shown;
 
 pub use document::markdown;
-pub use drawings::{Drawing, drawings};
+pub use drawings::{FigureDrawing, drawings};
 pub use row::{MeasuredScene, VolumeFigures};
-pub use shown::Shown;
+pub use shown::ShownStatement;
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;

@@ -2,7 +2,7 @@
 //! the document is up to date.
 
 use pxpl5_scene::builtin;
-use pxpl5_volume::figures::{Drawing, VolumeFigures, all, drawings, markdown};
+use pxpl5_volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
 use pxpl5_volume::spatialgl::Threads;
 use std::sync::{Arc, LazyLock};
 
@@ -86,5 +86,5 @@ fn the_drawings_show_what_their_captions_say() {
     };
     assert!(of_slice(4) < of_slice(8) && of_slice(8) < of_slice(7));
     assert!(of_slice(4) < of_slice(6) && of_slice(6) < of_slice(7));
-    assert_eq!(Drawing::sheet(&drawn).dimensions(), (3 * 260, 3 * 260));
+    assert_eq!(FigureDrawing::sheet(&drawn).dimensions(), (3 * 260, 3 * 260));
 }

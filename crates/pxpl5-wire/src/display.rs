@@ -30,7 +30,7 @@ mod surface;
 pub use aim::{Aim, LightTimes};
 pub use config::{DisplayConfig, DisplayError};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
-pub use light::{Light, Scan};
+pub use light::{PixelLight, ScanOrder};
 pub use surface::{Counter, Surface};
 
 use crate::{Body, CopyTarget, NodeId, PeriodNumber};
@@ -168,8 +168,8 @@ pub trait Display: Any + Debug + Send + Sync {
 
     /// Returns the order in which pixels are lit, and how long each pixel shines after the time [`Display::lights`].
     /// The default is a scan line by line from the top, in which each pixel shines only for an instant.
-    fn light(&self) -> Light {
-        Light::default()
+    fn light(&self) -> PixelLight {
+        PixelLight::default()
     }
 
     /// Returns the display's counters. Each counter covers the time since the start of the run.

@@ -1,14 +1,14 @@
 //! The published figures and the simulated values as a Markdown document.
 
 use super::definitions::{SEGMENTS, definitions};
-use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
+use super::experiments::{CellFit, EXPERIMENT_FRAMES, Experiments, NamedWalk, SizeLimit, SlowRendererResult};
 use super::fit::RATES_HZ;
 use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
 use super::row::verdict;
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use pxpl5_sim::figures::column::{ERROR, NUMBER, four};
-use pxpl5_sim::figures::{self, Basis, Column, Definition, FigureRow};
+use pxpl5_sim::figures::{self, Basis, Definition, FigureRow, TableColumn};
 use std::fmt::Write as _;
 
 /// Returns the text of docs/address-recalculation.md: the rows with the provenance of each number, then the detailed
@@ -89,7 +89,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
     );
 }
 
-const COLUMNS: [Column<FigureRow>; 9] = [
+const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| row.experiment.to_owned()),
     NUMBER,
     ("statement", |row| row.statement.to_string()),
@@ -123,7 +123,7 @@ pub fn missed(rows: &[FigureRow]) -> String {
 }
 
 fn defined(text: &mut String) {
-    let columns: [Column<Definition>; 4] = [
+    let columns: [TableColumn<Definition>; 4] = [
         ("#", |one| one.id.to_owned()),
         ("what", |one| one.statement.to_string()),
         ("value", |one| four(one.value)),
@@ -155,7 +155,7 @@ fn fits(text: &mut String, all: &Experiments) {
          | published | | {} | |\n",
         rates(&RATES_HZ)
     );
-    for Fit { rules, cell_m, rates_hz } in &all.fits {
+    for CellFit { rules, cell_m, rates_hz } in &all.fits {
         let _ = writeln!(text, "| {} | {cell_m:.1} m | {} | {} |", rules.text(), rates(rates_hz), errors(rates_hz));
     }
 }

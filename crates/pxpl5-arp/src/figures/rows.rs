@@ -1,7 +1,7 @@
 //! All rows of the comparison between published and simulated numbers, by experiment.
 
 use super::definitions::SEGMENTS;
-use super::experiments::{Experiments, Fit};
+use super::experiments::{CellFit, Experiments};
 use super::fit::{RATE_FITTED, RATES_HZ};
 use super::interpretations::PIXEL_DEG;
 use super::row::{limit, row, shape};
@@ -76,7 +76,7 @@ fn table_1(all: &Experiments) -> Vec<FigureRow> {
 
 fn rate(all: &Experiments, memory: usize) -> FigureRow {
     let basis = if memory == RATE_FITTED { Basis::Fitted("priority.cell_m") } else { Basis::Free };
-    let Fit { cell_m, rates_hz, .. } = &all.fits[0];
+    let CellFit { cell_m, rates_hz, .. } = &all.fits[0];
     let statement = format!("update rate of memory {memory} (rings that double, cells of {cell_m:.1} m)");
     row("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], basis)
 }

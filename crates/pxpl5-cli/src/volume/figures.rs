@@ -8,7 +8,7 @@ use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
-use pxpl5::volume::figures::{Drawing, VolumeFigures, all, drawings, markdown};
+use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
 use pxpl5::volume::spatialgl::Threads;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError
         folder.put(&format!("figure-{:02}.png", drawing.number), &png)?;
     }
     let texts = [("about", "figures 4 to 12, row by row".to_owned())];
-    folder.put("figures.png", &png_bytes(&Drawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
+    folder.put("figures.png", &png_bytes(&FigureDrawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
 }
 
 fn text(figures: &VolumeFigures) -> String {

@@ -1,14 +1,14 @@
 //! The document ACCURACY.md, generated from the figures.
 
 use super::{Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
-use crate::application_time::{ApplicationTime, Spread, published};
+use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
 use crate::readings::{self, FigureFit, Fit, Readings};
 use pxpl5_sim::figures::column::{
     DETAILS, EXPERIMENT, INTERVAL, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
 };
-use pxpl5_sim::figures::{Column, table};
+use pxpl5_sim::figures::{TableColumn, table};
 use std::fmt::Write as _;
 
 /// Returns the text of ACCURACY.md: a table of all figures, then each miss with its cause.
@@ -173,7 +173,7 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
          hardly changes the latency, because the host is a frame ahead.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
-    let cells = |figures: &[Spread]| {
+    let cells = |figures: &[FlyThroughLatency]| {
         let cells = figures.iter().map(|figure| format!("{} ({:.3})", four(figure.mean), figure.sd));
         cells.collect::<Vec<_>>().join(" | ")
     };
@@ -246,7 +246,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
     );
 }
 
-const COLUMNS: [Column<FigureRow>; 8] = [
+const COLUMNS: [TableColumn<FigureRow>; 8] = [
     NUMBER,
     STATEMENT,
     PUBLISHED,

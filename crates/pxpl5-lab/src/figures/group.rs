@@ -7,7 +7,7 @@ use super::{Basis, Bench, Figure, FigureError, FigureRow};
 use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
 use pxpl5_sim::figures::column::{DETAILS, ERROR, EXPERIMENT, INTERVAL, NUMBER, PUBLISHED, SIMULATED, STATEMENT};
-use pxpl5_sim::figures::{Column, table};
+use pxpl5_sim::figures::{TableColumn, table};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -49,9 +49,9 @@ pub(super) const fn free(
     Figure { id, paper, section, statement, value, unit, spread, experiment, basis: Basis::Free, cause }
 }
 
-const MARK: Column<FigureRow> = ("", |row| if row.is_met { "met" } else { "**miss**" }.to_owned());
+const MARK: TableColumn<FigureRow> = ("", |row| if row.is_met { "met" } else { "**miss**" }.to_owned());
 
-const COLUMNS: [Column<FigureRow>; 7] = [NUMBER, STATEMENT, PUBLISHED, SIMULATED, ERROR, INTERVAL, MARK];
+const COLUMNS: [TableColumn<FigureRow>; 7] = [NUMBER, STATEMENT, PUBLISHED, SIMULATED, ERROR, INTERVAL, MARK];
 
 impl FigureGroup {
     pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {

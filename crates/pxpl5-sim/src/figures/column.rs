@@ -1,42 +1,43 @@
 //! Columns that several tables of figures share. Numbers have four significant digits.
 
-use super::{Basis, Column, FigureRow, significant};
+use super::{Basis, FigureRow, TableColumn, significant};
 
 /// Number of the figure.
-pub const NUMBER: Column<FigureRow> = ("#", |row| row.id.to_owned());
+pub const NUMBER: TableColumn<FigureRow> = ("#", |row| row.id.to_owned());
 
 /// Statement of the paper, with the part of the paper that prints it.
-pub const STATEMENT: Column<FigureRow> = ("figure", |row| format!("{} ({})", row.statement, row.source));
+pub const STATEMENT: TableColumn<FigureRow> = ("figure", |row| format!("{} ({})", row.statement, row.source));
 
 /// Published number with its unit, and with its range if the paper prints one.
-pub const PUBLISHED: Column<FigureRow> = ("published", |row| {
+pub const PUBLISHED: TableColumn<FigureRow> = ("published", |row| {
     let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", four(spread)));
     format!("{}{spread} {}", four(row.published), row.unit)
 });
 
 /// Simulated number with its unit, and its range over a condition that the paper does not print.
-pub const SIMULATED: Column<FigureRow> = ("simulated", |row| {
+pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
     let unprinted = row.unprinted.map_or_else(String::new, |bounds| format!(" ({})", range(bounds)));
     format!("{} {}{unprinted}", four(row.simulated), row.unit)
 });
 
 /// Relative error in percent, or "-" if the published number is 0 or missing.
-pub const ERROR: Column<FigureRow> = ("error", error);
+pub const ERROR: TableColumn<FigureRow> = ("error", error);
 
 /// Range of the figure while unpublished parameters vary.
-pub const INTERVAL: Column<FigureRow> = ("interval", |row| row.interval.map_or_else(|| "not varied".to_owned(), range));
+pub const INTERVAL: TableColumn<FigureRow> =
+    ("interval", |row| row.interval.map_or_else(|| "not varied".to_owned(), range));
 
 /// Provenance of the row, with the parameter or rule that was chosen.
-pub const PROVENANCE: Column<FigureRow> = ("provenance", |row| match row.basis {
+pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.basis {
     Basis::Fitted(chosen) | Basis::Rule(chosen) => format!("{}: {chosen}", row.basis.name()),
     _ => row.basis.name().to_owned(),
 });
 
 /// Description of the experiment.
-pub const EXPERIMENT: Column<FigureRow> = ("experiment", |row| row.experiment.to_owned());
+pub const EXPERIMENT: TableColumn<FigureRow> = ("experiment", |row| row.experiment.to_owned());
 
 /// Additional numbers of the experiment.
-pub const DETAILS: Column<FigureRow> = ("other results", |row| {
+pub const DETAILS: TableColumn<FigureRow> = ("other results", |row| {
     let details = row.details.iter().map(|detail| format!("{} {} {}", detail.name, four(detail.value), detail.unit));
     details.collect::<Vec<_>>().join(", ")
 });

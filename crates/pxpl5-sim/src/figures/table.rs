@@ -1,10 +1,10 @@
 //! Tables in Markdown, and numbers in their cells.
 
 /// A column of a table: its heading, and the function that returns the text of a row's cell.
-pub type Column<R> = (&'static str, fn(&R) -> String);
+pub type TableColumn<R> = (&'static str, fn(&R) -> String);
 
 /// Returns rows as a Markdown table with a heading.
-pub fn table<'a, R: 'a>(columns: &[Column<R>], rows: impl IntoIterator<Item = &'a R>) -> String {
+pub fn table<'a, R: 'a>(columns: &[TableColumn<R>], rows: impl IntoIterator<Item = &'a R>) -> String {
     let heading = columns.iter().map(|(name, _)| if name.is_empty() { " |".to_owned() } else { format!(" {name} |") });
     let mut text = format!("|{}\n|{}\n", heading.collect::<String>(), "---|".repeat(columns.len()));
     for row in rows {
@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn a_table_has_a_heading_and_a_line_for_each_row() {
-        let columns: [Column<u32>; 2] = [("", |n| n.to_string()), ("square", |n| (n * n).to_string())];
+        let columns: [TableColumn<u32>; 2] = [("", |n| n.to_string()), ("square", |n| (n * n).to_string())];
         assert_eq!(table(&columns, &[3, 4]), "| | square |\n|---|---|\n| 3 | 9 |\n| 4 | 16 |\n");
     }
 }

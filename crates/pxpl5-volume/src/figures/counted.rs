@@ -6,8 +6,8 @@ use pxpl5_sim::figures::FigureRow;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
-    BinLayout, Binning, CommandBuffer, Context, HostRenderer, Projection, SliceClip, SliceView, SpatialDisplay,
-    SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
+    BinLayout, Binning, ColouredVertex, CommandBuffer, DrawContext, HostRenderer, Projection, SliceClip, SliceView,
+    SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
 /// Returns all figures of the paper that are counted or measured.
@@ -48,9 +48,9 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
 /// Returns a recording of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
-    let corner = |corner: [f64; 3]| Vertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
+    let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
     let buffer = VertexBuffer::new(TRIANGLE.map(corner).to_vec())?;
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles)?;
     Ok(context.present())
 }

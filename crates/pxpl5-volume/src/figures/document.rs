@@ -1,10 +1,10 @@
 //! The figures of the SpatialGL paper and the results of the model as a Markdown document.
 
 use super::row::{MeasuredScene, VolumeFigures};
-use super::shown::Shown;
+use super::shown::ShownStatement;
 use crate::settings::VolumeSettings;
 use pxpl5_sim::figures::column::NUMBER;
-use pxpl5_sim::figures::{Column, Definition, FigureRow, significant, table};
+use pxpl5_sim::figures::{Definition, FigureRow, TableColumn, significant, table};
 use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
@@ -45,7 +45,7 @@ fn head(text: &mut String, figures: &VolumeFigures) {
     );
 }
 
-const COLUMNS: [Column<FigureRow>; 8] = [
+const COLUMNS: [TableColumn<FigureRow>; 8] = [
     NUMBER,
     ("statement", |row| match &row.scene {
         Some(scene) => format!("{} ({scene})", row.statement),
@@ -88,7 +88,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
 }
 
 fn definitions(text: &mut String, all: &[Definition]) {
-    let columns: [Column<Definition>; 5] = [
+    let columns: [TableColumn<Definition>; 5] = [
         ("#", |one| one.id.to_owned()),
         ("number", |one| one.statement.to_string()),
         ("source", |one| one.source.to_owned()),
@@ -104,9 +104,9 @@ fn definitions(text: &mut String, all: &[Definition]) {
     );
 }
 
-fn shown(text: &mut String, all: &[Shown]) {
+fn shown(text: &mut String, all: &[ShownStatement]) {
     let _ = write!(text, "\n## Statements without numbers\n\n| the paper says | the model | |\n|---|---|---|\n");
-    for Shown { statement, evidence, holds } in all {
+    for ShownStatement { statement, evidence, holds } in all {
         let _ = writeln!(text, "| {statement} | {evidence} | {} |", if *holds { "shown" } else { "**not shown**" });
     }
 }

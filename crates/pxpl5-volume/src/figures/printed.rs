@@ -6,9 +6,9 @@ use pxpl5_sim::parameters::Standing;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
-    BinLayout, CommandBuffer, Context, HalfWedge, HostRenderer, Jitter, Projection, SliceClip, SliceView, SliceVolume,
-    SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeFrame,
-    WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
+    BinLayout, ColouredVertex, CommandBuffer, DrawContext, HalfWedge, HostRenderer, Jitter, Projection, SliceClip,
+    SliceView, SliceVolume, SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, VertexBuffer,
+    VolumeConfig, VolumeFrame, WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
 
 /// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
@@ -36,9 +36,9 @@ pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDi
 }
 
 pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
-    let vertices = TRIANGLE.map(|corner| Vertex::new(corner.into(), [255; 3]));
+    let vertices = TRIANGLE.map(|corner| ColouredVertex::new(corner.into(), [255; 3]));
     let buffer = VertexBuffer::new(vertices.to_vec())?;
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles)?;
     Ok(context.present())
 }

@@ -1,6 +1,6 @@
 //! The data of the figures: rows, scenes, and the complete record.
 
-use super::shown::Shown;
+use super::shown::ShownStatement;
 use crate::experiment::Volume;
 use pxpl5_sim::figures::{Definition, FigureRow};
 use serde::Serialize;
@@ -15,7 +15,7 @@ pub struct VolumeFigures {
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<Definition>,
     /// Statements of the paper without numbers, each with the measurements that test it.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<ShownStatement>,
     /// Scenes on which figures were measured.
     pub scenes: Vec<MeasuredScene>,
 }
