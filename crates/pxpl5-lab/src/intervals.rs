@@ -15,9 +15,10 @@
 //! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
 //! position and the interpretations vary too.
 
-use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
+use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::mix;
 use pxpl5_sim::parameters::Standing;
 use serde::Serialize;

@@ -25,7 +25,8 @@ pub fn significant(value: f64, digits: i32) -> String {
         return "0".to_owned();
     }
     // The number of decimals follows from the magnitude.
-    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 10) as usize;
+    let exponent = format!("{value:e}").split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    let decimals = (digits - 1 - exponent).clamp(0, 10) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
