@@ -26,7 +26,8 @@ impl Latch {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, of displayed pixels and of reading the orientation. Field `n` scans the even lines if `n` is even.
+/// Times of retraces, of displayed pixels and of reading the orientation. Field `n` scans the even lines if `n` is
+/// even.
 #[derive(Clone, Copy, Debug)]
 pub struct FaceScan {
     video: Video,

@@ -87,8 +87,8 @@ pub struct TwoSidedLight {
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts a
-/// new one. The drawing state does not change.
+/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
+/// a new one. The drawing state does not change.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
     /// Matrix from object to world coordinates. It must scale uniformly if there is a light.

@@ -1,6 +1,6 @@
 //! The figures of the SpatialGL paper. A [`FigureRow`] compares a number of the paper with a number that the code
-//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A definition has
-//! no verdict.
+//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A
+//! definition has no verdict.
 
 use crate::perspecta::timing::PerspectaConfig;
 use crate::{
