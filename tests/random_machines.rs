@@ -317,11 +317,11 @@ fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
         Value::Null => 0,
         window => whole(&window["last_period"], "last", told) + 1 - whole(&window["first_period"], "first", told),
     };
-    let all = ["judged", "behind", "empty", "incomplete", "before"].map(of).iter().sum::<u64>();
+    let all = ["evaluated", "behind", "empty", "incomplete", "before"].map(of).iter().sum::<u64>();
     assert_eq!(all, 25 * periods, "{told}: {error}");
-    assert_eq!(error["pixels"]["n"], of("judged"), "{told}");
+    assert_eq!(error["pixels"]["n"], of("evaluated"), "{told}");
     let shown = report["due"]["shown"].as_u64().unwrap_or(1);
-    assert!(shown > 0 || (of("judged"), of("behind")) == (0, 0), "{told}: {error}");
+    assert!(shown > 0 || (of("evaluated"), of("behind")) == (0, 0), "{told}: {error}");
     let budget = &report["head"]["end_to_end"];
     let stages = ["tracking_ms", "waiting_ms", "sending_ms", "drawing_ms", "showing_ms", "scanning_ms"];
     let sum = stages.map(|stage| number(&budget[stage])).into_iter().sum::<Option<f64>>();

@@ -10,7 +10,7 @@ was observed::
     outcome.picture("left").array    # (480, 640, 3) uint8
 
 Times are simulated time unless a name says host. Lengths are metres, angles degrees; axes are right-handed, y up. Numbers of the machine
-have a unit, a standing (published, derived, assumed), a range and a source: :attr:`Machine.parameters`.
+have a unit, a provenance (published, derived, assumed), a range and a source: :attr:`Machine.parameters`.
 
 Everything that this package raises by itself is a :class:`Pxpl5Error`, with the words of the library: what, where, expected, found.
 """

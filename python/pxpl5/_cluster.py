@@ -179,11 +179,11 @@ class Chunks:
 class Cluster:
     """A sweep on a cluster while it goes on."""
 
-    def __init__(self, space: SweepSpace, store: _native.Store, client: Client, told: Any) -> None:
+    def __init__(self, space: SweepSpace, store: _native.Store, client: Client, reporter: Any) -> None:
         self._space = space
         self._store = store
         self._client: Any = client
-        self._told = told
+        self._told = reporter
         missing = store.missing()
         self._missing = set(missing)
         self._chunks = Chunks(space, missing)

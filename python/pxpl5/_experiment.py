@@ -59,7 +59,7 @@ class Made:
 
     def _put_pipeline(self, pipeline: str | PolicyPipeline | None) -> None:
         if isinstance(pipeline, PolicyPipeline):
-            # What the firmware is told apart by is its own; keys and checks are those of the nearest in the registry.
+            # What the firmware is reporter apart by is its own; keys and checks are those of the nearest in the registry.
             self.policy = pipeline.policy
             self.phong = pipeline.shading == "phong"
             self.put("pipeline", "rendering-control")
@@ -220,26 +220,26 @@ class Experiment(Strict):
         """
         choice("keep", keep, ("everything", "statistics"))
         number = optional("threads", threads)
-        with reporting(progress, "fields") as told:
+        with reporting(progress, "fields") as reporter:
             if each_field is None:
-                outcome = self._finished(lambda: self._native.run(told, number, keep == "everything"))
+                outcome = self._finished(lambda: self._native.run(reporter, number, keep == "everything"))
             else:
-                outcome = self._run_by_fields(keep, told, each_field)
+                outcome = self._run_by_fields(keep, reporter, each_field)
         advice = outcome.advice
         if advice is not None:
             warnings.warn(advice, RuntimeWarning, stacklevel=2)
         return outcome
 
     def _run_by_fields(
-        self, keep: str, told: Callable[[int, int], object] | None, each_field: Callable[[Stepper], object]
+        self, keep: str, reporter: Callable[[int, int], object] | None, each_field: Callable[[Stepper], object]
     ) -> Outcome:
         stepper = Stepper(self._native.stepper(keep == "everything"), self)
         for done in range(1, self.fields + 1):
             if stepper.run_to_field(done) not in ("reached", "end"):
                 break
             each_field(stepper)
-            if told is not None:
-                told(done, self.fields)
+            if reporter is not None:
+                reporter(done, self.fields)
         return stepper.finish()
 
     def _finished(self, run: Callable[[], _native.Outcome]) -> Outcome:
@@ -342,7 +342,7 @@ class Experiment(Strict):
         return [Parameter(**entry) for entry in self._native.parameters()]
 
     def parameter_table(self) -> Table:
-        """The same as a table: path, value, unit, standing, low, high, source, read_only."""
+        """The same as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
     def settings(self) -> str:

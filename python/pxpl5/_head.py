@@ -32,7 +32,7 @@ class Head:
     #: ``world``: the poses are metres in the scene's coordinates.
     place: str = "scene"
     #: Metres from the eye at which errors are judged; None where the scene's content lies.
-    judge_at: float | None = None
+    evaluate_at: float | None = None
     #: Numbers of trackers and predictors by path, such as ``optical.latency``: see :func:`tracking_parameters`.
     tracking: dict[str, float] = field(default_factory=dict)
 
@@ -48,8 +48,8 @@ class Head:
         }
         if self.place != "scene":
             keys["head.place"] = self.place
-        if self.judge_at is not None:
-            keys["head.judge_at"] = float(self.judge_at)
+        if self.evaluate_at is not None:
+            keys["head.evaluate_at"] = float(self.evaluate_at)
         keys.update({path if path.startswith("tracking.") else f"tracking.{path}": n for path, n in self.tracking.items()})
         return keys
 

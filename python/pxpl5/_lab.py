@@ -63,7 +63,7 @@ FIGURE_DEFINITIONS = {
     "error_percent": "(simulated - published) / published, percent",
     "low": "least value when open parameters are varied within their ranges",
     "high": "greatest value when open parameters are varied within their ranges",
-    "standing": "free check, fitted, or rule",
+    "provenance": "free check, fitted, or rule",
     "misses": "outside of the printed range, or off by more than 3 percent",
 }
 
@@ -82,16 +82,16 @@ def figures(
 
     Raises :class:`SettingError` for a number that there is not.
     """
-    with reporting(progress, "figures") as told:
+    with reporting(progress, "figures") as reporter:
         if ids is None:
-            rows = _native.figures(level, told)
+            rows = _native.figures(level, reporter)
         else:
             rows = []
             wanted = names("ids", ids)
             for done, number in enumerate(wanted, 1):
                 rows.append(_native.figure(number, level))
-                if told is not None:
-                    told(done, len(wanted))
+                if reporter is not None:
+                    reporter(done, len(wanted))
     return table_of(rows, FIGURE_DEFINITIONS)
 
 
@@ -177,7 +177,7 @@ def limit_over(
         raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
     _positive("rate_hz", rate_hz)
     _positive("latency_fields", latency_fields)
-    with reporting(progress, "values") as told:
+    with reporting(progress, "values") as reporter:
         found = _native.limit_over(
             made.settings,
             over,
@@ -186,7 +186,7 @@ def limit_over(
             rate_hz=rate_hz,
             latency_fields=latency_fields,
             fields=optional("fields", fields, LEAST_FIELDS),
-            progress=told,
+            progress=reporter,
         )
     tried = [(float(value), bool(hit)) for value, hit in found.pop("tried")]
     return OverLimit(tried=tried, **found)
@@ -330,8 +330,8 @@ def compare(
         numbers = list(range(1, whole("seeds", seeds, 1) + 1))
     else:
         numbers = [whole("seeds", seed) for seed in seeds]
-    with reporting(progress, "runs") as told:
-        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, told))
+    with reporting(progress, "runs") as reporter:
+        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, reporter))
 
 
 def rig(
@@ -386,8 +386,8 @@ def levels(*, experiments: int | None = None, speeds: bool = False, progress: Pr
     By default the measurement that is recorded in the repository. With ``experiments`` the errors are measured now, over so many random
     experiments; with ``speeds`` the speeds too, which needs an idle computer. Raises :class:`RunError` if an experiment fails.
     """
-    with reporting(progress, "steps") as told:
-        found = _native.levels(optional("experiments", experiments, 1), speeds, told)
+    with reporting(progress, "steps") as reporter:
+        found = _native.levels(optional("experiments", experiments, 1), speeds, reporter)
     return table_of(found["levels"], LEVEL_DEFINITIONS)
 
 
@@ -407,8 +407,8 @@ def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Pro
     A row for each interpretation at the analytic level, then the ``best`` of them at the transaction level. ``seeds`` and ``frames``
     are the size of the fly-throughs. It takes minutes. Raises :class:`RunError` if a figure cannot be simulated.
     """
-    with reporting(progress, "runs") as told:
-        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), told)
+    with reporting(progress, "runs") as reporter:
+        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), reporter)
     rows = [
         {"evaluated_at": level, **{key: fit[key] for key in READING_DEFINITIONS if key != "evaluated_at"}}
         for level in ("analytic", "transaction")

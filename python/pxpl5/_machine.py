@@ -24,7 +24,7 @@ class Parameter:
     #: Unit of the value and the range, such as ns.
     unit: str
     #: Published, derived or assumed.
-    standing: str
+    provenance: str
     #: Least value that the sources allow.
     low: float
     #: Greatest value that the sources allow.
@@ -48,7 +48,7 @@ class Parameter:
 PARAMETER_DEFINITIONS = {
     "path": "board and field",
     "value": "in the unit beside it",
-    "standing": "published, derived or assumed",
+    "provenance": "published, derived or assumed",
     "low": "least value that the sources allow",
     "high": "greatest value that the sources allow",
     "read_only": "whether it is listed only",
@@ -56,7 +56,7 @@ PARAMETER_DEFINITIONS = {
 
 
 def parameter_table(parameters: list[Parameter]) -> Table:
-    """Parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+    """Parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
     rows = [asdict(parameter) for parameter in parameters]
     for row in rows:
         row.update({key: float(row[key]) for key in ("value", "low", "high")})
@@ -128,7 +128,7 @@ class Machine(Strict, Mapping[str, Parameter]):
         return list(self._known["warnings"])
 
     def table(self) -> Table:
-        """The parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+        """The parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
     def __getitem__(self, path: str) -> Parameter:
@@ -154,6 +154,6 @@ class Machine(Strict, Mapping[str, Parameter]):
         return f"<pxpl5.Machine {self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers{changes}>"
 
     def _repr_html_(self) -> str:
-        rows = [[p.path, p.value, p.unit, p.standing, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
-        head = ["parameter", "value", "unit", "standing", "range", "source"]
+        rows = [[p.path, p.value, p.unit, p.provenance, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
+        head = ["parameter", "value", "unit", "provenance", "range", "source"]
         return _html.table(head, rows, f"{self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-#: What ``progress=`` takes: None for a bar where one makes sense, True or False for a bar or none, or a callable that is told
+#: What ``progress=`` takes: None for a bar where one makes sense, True or False for a bar or none, or a callable that is reporter
 #: (done, of all).
 Progress = bool | None | Callable[[int, int], object]
 
@@ -34,7 +34,7 @@ def _bar(unit: str) -> Any:
 
 @contextmanager
 def reporting(progress: Progress, unit: str) -> Iterator[Callable[[int, int], object] | None]:
-    """What is told of progress, for as long as some work takes."""
+    """What is reporter of progress, for as long as some work takes."""
     if callable(progress):
         yield progress
         return

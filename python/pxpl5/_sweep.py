@@ -119,11 +119,11 @@ def _swept(
     keeps: bool,
 ) -> SweepResults:
     store = _native.Store(space._native, folder, resume)
-    with reporting(progress, "points") as told:
+    with reporting(progress, "points") as reporter:
         if client is None:
-            store.run(optional("threads", threads, 1) or os.cpu_count() or 1, told)
+            store.run(optional("threads", threads, 1) or os.cpu_count() or 1, reporter)
         else:
-            Cluster(space, store, client, told).run()
+            Cluster(space, store, client, reporter).run()
     lines = store.lines()
     store.finish()
     return SweepResults(lines, folder if keeps else None, space.header())

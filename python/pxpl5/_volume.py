@@ -45,6 +45,6 @@ def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"),
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """
-    with reporting(progress, "scenes") as told:
-        found = _native.volume_figures([_scene(scene) for scene in scenes], told)
+    with reporting(progress, "scenes") as reporter:
+        found = _native.volume_figures([_scene(scene) for scene in scenes], reporter)
     return table_of(found["figures"])

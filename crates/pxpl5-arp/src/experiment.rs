@@ -79,7 +79,7 @@ impl WalkOutcome {
             segments: world.segments.len() as u64,
             frames,
             m_per_s: plan.walk.m_per_s,
-            settings: plan.said().clone(),
+            settings: plan.given().clone(),
         };
         drop(eye);
         Ok(Self { path, settings, tally, report, world })

@@ -48,7 +48,7 @@ pub struct WalkPlan {
     has_cascade: Option<bool>,
     threshold: Option<ThresholdChoice>,
     route: Route,
-    said: BTreeMap<String, String>,
+    given: BTreeMap<String, String>,
 }
 
 /// A threshold in pixels or texels. It becomes an angle once the display's resolution is known.
@@ -95,7 +95,7 @@ impl WalkPlan {
             has_cascade: None,
             threshold: None,
             route: Route::Scene,
-            said: BTreeMap::new(),
+            given: BTreeMap::new(),
         }
     }
 
@@ -125,8 +125,8 @@ impl WalkPlan {
 
     /// Returns the settings that the user gave explicitly, by path.
     #[must_use]
-    pub const fn said(&self) -> &BTreeMap<String, String> {
-        &self.said
+    pub const fn given(&self) -> &BTreeMap<String, String> {
+        &self.given
     }
 
     /// Sets the setting at a path. `place` names the source of the value in errors, such as `--set`.
@@ -150,7 +150,7 @@ impl WalkPlan {
         };
         done.map_err(|expected| wrong(path, text, place, expected))?;
         // Record the setting for the report.
-        self.said.insert(path.to_owned(), text.to_owned());
+        self.given.insert(path.to_owned(), text.to_owned());
         Ok(())
     }
 
@@ -170,7 +170,7 @@ impl WalkPlan {
     #[must_use]
     pub fn behind(mut self, lens: Lens, name: &str) -> Self {
         self.chosen.display.lens = lens;
-        self.said.insert("arp.lens".to_owned(), format!("table:{name}"));
+        self.given.insert("arp.lens".to_owned(), format!("table:{name}"));
         self
     }
 

@@ -102,7 +102,7 @@ struct Warnings {
 }
 
 impl Warnings {
-    fn tell(&self, program: &Program) {
+    fn print(&self, program: &Program) {
         let is_allowed = |rule: Rule| self.allow.iter().any(|name| name == "all" || name == rule.name());
         let told: Vec<String> =
             program.warnings.iter().filter(|warning| !is_allowed(warning.rule)).map(ToString::to_string).collect();
@@ -121,7 +121,7 @@ pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
         Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?))),
         Command::Run { file, base, entry, stop, budget, memory, show, json, quiet, warnings } => {
             let program = load(&file, base).map_err(CliError::failure)?;
-            warnings.tell(&program);
+            warnings.print(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
             // The report is printed even if the program did not reach its end.
@@ -162,7 +162,7 @@ fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
 
 fn asm(file: &Path, base: u32, output: Option<&Path>, warnings: &Warnings) -> Result<(), CliError> {
     let (program, source) = assembled(file, base).map_err(CliError::failure)?;
-    warnings.tell(&program);
+    warnings.print(&program);
     match output {
         Some(path) => OutputFile::open(path, "-o")?.write(&program.bytes),
         None => print(&program.listing(Some(&source))),

@@ -136,6 +136,6 @@ fn line(text: &mut String, Parameter { path, info, value, read_only }: &Paramete
     let _ = writeln!(
         text,
         "{path:<42} {value:>12} {:<8} {:<9} {low}..{high}: {}{fixed}",
-        info.unit, info.standing, info.source
+        info.unit, info.provenance, info.source
     );
 }

@@ -224,8 +224,8 @@ impl RunWork {
         // Fields, pictures and blocks each add their own cost.
         let run = fields * FIELD_S + fields * self.pictures_a_field * picture + fields * self.blocks() * BLOCK_S;
         let load = if self.uses_closed_form { LOAD_S * eyes * primitives } else { 0.0 };
-        let (runs, judged) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
-        runs * run + load + judged
+        let (runs, evaluated) = if self.is_tracked { (RUNS_OF_HEAD, fields * JUDGED_FIELD_S) } else { (1.0, 0.0) };
+        runs * run + load + evaluated
     }
 }
 

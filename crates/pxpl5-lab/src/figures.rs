@@ -1,7 +1,7 @@
 //! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
-//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
+//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, provenance
 //! ```
 //!
 //! Papers about other systems have separate families of rows ([`FigureFamily`]), measured together with the figures of

@@ -20,7 +20,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::mix;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
 /// Number of random machines in the joint sample.
@@ -43,7 +43,7 @@ pub struct Variation {
     /// Minimum and maximum value of the parameter that the sources allow.
     pub range: (u64, u64),
     /// Provenance of the parameter's value in the preset: derived or assumed, never published.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 /// Effect of one parameter on one figure.
@@ -108,16 +108,16 @@ const FITTED: [(&str, u64, (u64, u64)); 2] =
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
-    let open = parameters.filter(|p| p.info.standing != Standing::Published && p.info.range.0 < p.info.range.1);
+    let open = parameters.filter(|p| p.info.provenance != Provenance::Published && p.info.range.0 < p.info.range.1);
     let of_machine = open.filter_map(|p| {
         let range = p.info.whole_range()?;
-        Some(Variation { path: p.path, value: p.value.whole()?, range, standing: p.info.standing })
+        Some(Variation { path: p.path, value: p.value.whole()?, range, provenance: p.info.provenance })
     });
     let fitted = FITTED.iter().map(|(path, value, range)| Variation {
         path: (*path).to_owned(),
         value: *value,
         range: *range,
-        standing: Standing::Derived,
+        provenance: Provenance::Derived,
     });
     of_machine.chain(fitted).collect()
 }
@@ -217,7 +217,7 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
-    Some(Variation { path: line.path, value, range, standing: line.info.standing })
+    Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
 /// Combines two designs into the interval of one figure. `ends` has the values at both ends of every range in turn, and

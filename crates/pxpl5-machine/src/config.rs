@@ -175,7 +175,7 @@ impl Parameter {
         let unit = info.unit;
         format!(
             "{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})",
-            info.standing, info.source
+            info.provenance, info.source
         )
     }
 }

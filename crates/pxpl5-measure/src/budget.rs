@@ -38,7 +38,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        BudgetSum::default().said()
+        BudgetSum::default().result()
     }
 }
 
@@ -121,7 +121,7 @@ impl BudgetSum {
     }
 
     /// Returns the mean of each stage.
-    pub(crate) fn said(self) -> Budget {
+    pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
         let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = means;

@@ -38,7 +38,7 @@ impl ErrorCauses {
     #[must_use]
     pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;
-        if whole.judged == 0 {
+        if whole.evaluated == 0 {
             return None;
         }
         let whole_px = whole.pixels.mean;

@@ -50,7 +50,7 @@ pub struct PixelErrors {
     /// Error of the pixel in the middle of the picture, in degrees.
     pub centre_deg: Percentiles,
     /// Number of evaluated pixels: grid pixels of all fields.
-    pub judged: u64,
+    pub evaluated: u64,
     /// Number of pixels whose content lies behind the eye at the time when the pixels are lit.
     pub behind: u64,
     /// Number of pixels that were lit before any picture was shown.

@@ -87,7 +87,7 @@ impl EyeSum {
     }
 
     /// Returns the results. `None` if pixels are lit for an instant only and no device moves pictures.
-    pub(crate) fn said(self) -> Option<EyeReport> {
+    pub(crate) fn result(self) -> Option<EyeReport> {
         let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
         let reprojection = self.device.map(|device| ReprojectionReport {
             device: device.setting,

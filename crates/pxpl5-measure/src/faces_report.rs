@@ -1,7 +1,7 @@
 //! Report of an address recalculation display, as numbers.
 
-use crate::step_sum::Steps;
-use crate::turn_sum::{RotationPart, Turns};
+use crate::step_observer::Steps;
+use crate::turn_observer::{RotationPart, Turns};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;

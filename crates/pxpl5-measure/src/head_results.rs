@@ -1,18 +1,18 @@
 //! Results that concern the head: from the streaming observer, or else computed from the records still in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
-use crate::error_sum::ErrorSum;
+use crate::error_observer::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::eye_report::EyeReport;
-use crate::head_sum::HeadResults;
-use crate::step_sum::{StepSum, Steps};
-use crate::turn_sum::{RotationLatencySum, Turns};
+use crate::head_observer::HeadResults;
+use crate::step_observer::{StepSum, Steps};
+use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
 impl HeadResults {
     /// Returns the results of the streaming observer, if the run had one.
     fn from_observer(outcome: &Outcome) -> Option<&Self> {
-        outcome.said()
+        outcome.observed()
     }
 }
 
@@ -42,7 +42,7 @@ impl PixelErrors {
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let said = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
-        said.map_or_else(|| judged(outcome, showing, None).0, |said| said.error.clone())
+        said.map_or_else(|| evaluated(outcome, showing, None).0, |said| said.error.clone())
     }
 
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
@@ -50,14 +50,14 @@ impl PixelErrors {
     /// For a run that discarded its records, the result covers only the last periods.
     #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
-        judged(outcome, showing, Some(cause)).0
+        evaluated(outcome, showing, Some(cause)).0
     }
 }
 
-fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
+fn evaluated(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
     let mut sum = ErrorSum::of(showing, without);
-    sum.take(&outcome.settled());
-    sum.said()
+    sum.take(&outcome.final_results());
+    sum.result()
 }
 
 impl EyeReport {
@@ -66,7 +66,7 @@ impl EyeReport {
     /// Returns `None` without a head. Returns `None` too for a display without persistence and without reprojection.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
-        outcome.head().and_then(|_| judged(outcome, showing, None).1)
+        outcome.head().and_then(|_| evaluated(outcome, showing, None).1)
     }
 }
 
@@ -75,7 +75,7 @@ impl EyeReport {
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
-    Some(said.unwrap_or_else(|| judged(outcome, showing, None)))
+    Some(said.unwrap_or_else(|| evaluated(outcome, showing, None)))
 }
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
@@ -92,14 +92,14 @@ impl Budget {
             return said.end_to_end;
         }
         let mut sum = BudgetSum::default();
-        sum.take(&outcome.settled());
-        sum.said()
+        sum.take(&outcome.final_results());
+        sum.result()
     }
 
     /// Returns the latency of each picture in memory, from the measured pose until the middle is lit, in milliseconds.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
         stages.iter().map(|stages| stages.iter().sum()).collect()
     }
@@ -112,8 +112,8 @@ impl Turns {
             return said.turns.clone();
         }
         let mut sum = RotationLatencySum::default();
-        sum.take(&outcome.settled());
-        sum.said()
+        sum.take(&outcome.final_results());
+        sum.result()
     }
 }
 
@@ -129,7 +129,7 @@ impl Steps {
             return Vec::new();
         }
         let mut sum = StepSum::default();
-        sum.take(&outcome.settled());
+        sum.take(&outcome.final_results());
         sum.result()
     }
 }

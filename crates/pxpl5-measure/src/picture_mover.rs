@@ -218,7 +218,7 @@ mod tests {
         let scene = Arc::new(builtin("gallery").expect("built in"));
         let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
         let outcome = experiment.fields(24).pixels(Pixels::Off).run().expect("it is small");
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let places = |x: u32, y: u32| Rgb([(x >> 8) as u8 + 1 + 8 * (y >> 8) as u8, x as u8, y as u8]);
         let screen = RgbImage::from_fn(640, 480, places);
         let place = |pixel: &Rgb<u8>| {

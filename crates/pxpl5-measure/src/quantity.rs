@@ -125,7 +125,7 @@ pub static QUANTITIES: [Quantity; 57] = [
         |o, r| r.head.as_ref().and_then(|_| tracking_and_rendering_ms(o)),
     ),
     of_run("error_px.n", "evaluated pixels: those of error_px; only with a head.motion", |_, r| {
-        Some(r.head.as_ref()?.error.judged as f64)
+        Some(r.head.as_ref()?.error.evaluated as f64)
     }),
     of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
     of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),

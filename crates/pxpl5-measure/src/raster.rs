@@ -88,7 +88,7 @@ impl<'a> RasterOffsets<'a> {
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let display = outcome.record().display();
         let view = view_of(display, &run.hmd);
         match head.head().raster() {

@@ -25,7 +25,7 @@ pub(crate) struct Evaluator {
 impl Evaluator {
     pub(crate) fn new(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let view = view_of(run.record.display(), &run.hmd);
-        let at_content = head.head().judge_at_m().is_none();
+        let at_content = head.head().evaluate_at_m().is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
@@ -207,7 +207,7 @@ impl<'a> Registration<'a> {
     /// head.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let head = run.head?;
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }

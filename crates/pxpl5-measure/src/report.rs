@@ -148,7 +148,7 @@ pub struct HeadReport {
     /// Hash of all settings of the head, including the parameters of its predictor.
     pub fingerprint: String,
     /// Fixed distance at which errors are evaluated, in metres. `None` if errors are evaluated at the scene's content.
-    pub judged_at_m: Option<f64>,
+    pub evaluated_at_m: Option<f64>,
     /// Raster of the head-mounted display: plain or shifted.
     pub display: Raster,
     /// Latency from the measurement of the head's pose until the picture is lit, by stage, in milliseconds.
@@ -167,7 +167,7 @@ impl HeadReport {
             prediction: *head.predictor(),
             training: head.training().copied(),
             fingerprint: head.fingerprint().to_string(),
-            judged_at_m: head.judge_at_m(),
+            evaluated_at_m: head.evaluate_at_m(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
             error,

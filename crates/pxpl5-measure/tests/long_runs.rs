@@ -107,7 +107,7 @@ fn assert_same(experiment: &Experiment) {
         "{name}: records were discarded"
     );
     let of_head = everything.report().head.expect("tracked");
-    assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+    assert!(of_head.error.evaluated > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
     let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
     assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
     assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");

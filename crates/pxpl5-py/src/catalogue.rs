@@ -41,7 +41,7 @@ pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
 
 /// Returns the boards and parameters of a built-in machine after ``changes``, which maps paths of parameters to values.
 /// The result has ``n_gps``, ``n_renderers``, ``warnings`` and a list of parameters. Each parameter is a dictionary
-/// with path, value, unit, standing (where the number comes from), low, high, source and read_only.
+/// with path, value, unit, provenance (where the number comes from), low, high, source and read_only.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid preset, path or value.
 #[pyfunction]
@@ -68,7 +68,7 @@ pub(crate) fn machine_parameters<'py>(
     )
 }
 
-/// Converts parameters to JSON objects with path, value, unit, standing (where the number comes from), range, source
+/// Converts parameters to JSON objects with path, value, unit, provenance (where the number comes from), range, source
 /// and read_only.
 pub(crate) fn described(parameters: &[Parameter]) -> Vec<serde_json::Value> {
     parameters.iter().map(described_one).collect()
@@ -81,7 +81,7 @@ fn described_one(parameter: &Parameter) -> serde_json::Value {
         "path": parameter.path,
         "value": parameter.value,
         "unit": info.unit,
-        "standing": info.standing.to_string(),
+        "provenance": info.provenance.to_string(),
         "low": low,
         "high": high,
         "source": info.source,

@@ -110,7 +110,7 @@ impl Experiment {
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
         let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
-        let result = attended(py, progress, true, move |told| run(&native, workstation, functions, told));
+        let result = attended(py, progress, true, move |watch| run(&native, workstation, functions, watch));
         // An exception of a Python function takes precedence over the error that it causes in the run.
         self.functions.check()?;
         outcome_of_run(py, result?, &self.plan.measure)
@@ -123,8 +123,8 @@ impl Experiment {
     #[pyo3(signature = (keep_everything = true))]
     fn stepper(&self, py: Python<'_>, keep_everything: bool) -> PyResult<Stepper> {
         let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
-        let (native, told) = self.on_host(Workstation::with_threads(0));
-        let thread = MachineThread::start(py, native.keep(keep), told.stop_flag());
+        let (native, watch) = self.on_host(Workstation::with_threads(0));
+        let thread = MachineThread::start(py, native.keep(keep), watch.stop_flag());
         self.functions.check()?;
         let thread = thread?.map_err(|error| exception(py, error, &self.plan.measure))?;
         Ok(Stepper { thread, checks: self.functions.clone(), measures: self.plan.measure.clone() })
@@ -136,8 +136,8 @@ impl Experiment {
     ///
     /// Raises :class:`pxpl5.SettingError` for a surface or a number of fields that does not exist.
     fn frames(&self, surface: Option<u16>, first: u64, fields: u64) -> PyResult<Frames> {
-        let (film, told) = self.film_of(surface, first, fields);
-        Frames::start(film, told, self.functions.clone())
+        let (film, watch) = self.film_of(surface, first, fields);
+        Frames::start(film, watch, self.functions.clone())
     }
 
     /// Returns the pictures of :meth:`frames` as an animated PNG at the true rate.
@@ -150,13 +150,13 @@ impl Experiment {
         first: u64,
         fields: u64,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (film, told) = self.film_of(surface, first, fields);
+        let (film, watch) = self.film_of(surface, first, fields);
         let texts = [
             ("config_hash", self.native.config_hash().to_string()),
             ("settings", self.plan.settings_for_any_folder().to_string()),
         ];
         let texts = texts.map(|(key, text)| (key.to_owned(), text)).into();
-        Ok(PyBytes::new(py, &film_bytes(py, film, texts, &told, &self.functions)?))
+        Ok(PyBytes::new(py, &film_bytes(py, film, texts, &watch, &self.functions)?))
     }
 
     /// Returns the number of display periods that the experiment simulates.
@@ -171,8 +171,8 @@ impl Experiment {
     /// Raises the same exceptions as :meth:`run`.
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (native, functions) = (self.native.clone(), self.functions.clone());
-        let result = attended(py, None, true, move |told| {
-            let host = StoppableHost { workstation: Workstation::with_threads(1), told, functions };
+        let result = attended(py, None, true, move |watch| {
+            let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
             what_if(&registry(), &native.host(host)).map_err(Box::new)
         });
         self.functions.check()?;
@@ -202,18 +202,18 @@ impl Experiment {
 impl Experiment {
     /// Returns the experiment on a host that Python can stop, and the flag that stops the host.
     fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
-        let told = Arc::new(Progress::default());
-        let host = StoppableHost { workstation, told: Arc::clone(&told), functions: self.functions.clone() };
-        (self.native.clone().host(host), told)
+        let watch = Arc::new(Progress::default());
+        let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions: self.functions.clone() };
+        (self.native.clone().host(host), watch)
     }
 
     fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
-        let (native, told) = self.on_host(Workstation::with_threads(0));
+        let (native, watch) = self.on_host(Workstation::with_threads(0));
         // The last picture is final only one field later.
         let length = self.native.length().max(first.saturating_add(fields).saturating_add(1));
         let surfaces = surface.map_or(FilmSurfaces::All, |surface| FilmSurfaces::One(SurfaceId(surface)));
         let native = native.pixels(Pixels::Lazy).fields(length);
-        (Film::new(native, PeriodNumber(first), fields, surfaces), told)
+        (Film::new(native, PeriodNumber(first), fields, surfaces), watch)
     }
 }
 
@@ -224,15 +224,15 @@ fn run(
     native: &Native,
     workstation: Workstation,
     functions: PythonFunctions,
-    told: Arc<Progress>,
+    watch: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
-    let host = StoppableHost { workstation, told: Arc::clone(&told), functions };
+    let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions };
     let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
-        told.tell(field.since(PeriodNumber::FIRST), fields);
+        watch.report(field.since(PeriodNumber::FIRST), fields);
         Ok(())
     };
     native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
@@ -241,7 +241,7 @@ fn run(
 /// The host computer for a run, which lets Python stop the run.
 struct StoppableHost {
     workstation: Workstation,
-    told: Arc<Progress>,
+    watch: Arc<Progress>,
     functions: PythonFunctions,
 }
 
@@ -257,7 +257,7 @@ impl Host for StoppableHost {
     }
 
     fn is_stopped(&self) -> bool {
-        self.told.is_stopped() || self.functions.has_raised()
+        self.watch.is_stopped() || self.functions.has_raised()
     }
 
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {

@@ -76,8 +76,9 @@ pub(crate) fn figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let figures =
-        attended(py, progress, false, move |told| run_all_with(&Bench::new(level), |done, of| told.tell(done, of)))?;
+    let figures = attended(py, progress, false, move |watch| {
+        run_all_with(&Bench::new(level), |done, of| watch.report(done, of))
+    })?;
     let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
     python(py, &rows)
 }
@@ -106,7 +107,7 @@ pub(crate) fn compare<'py>(
         until: None,
     };
     query.set_length().map_err(wrong_setting)?;
-    let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
+    let comparison = attended(py, progress, false, move |watch| query.run(|done, of| watch.report(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }
 
@@ -205,8 +206,8 @@ pub(crate) fn limit_over<'py>(
     let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
     let query = OverQuery { file, key: key.to_owned(), values, goal };
     let (tried, of) = (query.clone(), VALUES);
-    let limit = attended(py, progress, false, move |told| {
-        tried.search(|done| told.tell(done, of.max(done))).map_err(|error| error.to_string())
+    let limit = attended(py, progress, false, move |watch| {
+        tried.search(|done| watch.report(done, of.max(done))).map_err(|error| error.to_string())
     })?;
     let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
@@ -318,8 +319,8 @@ pub(crate) fn levels<'py>(
         None => LevelRecord::read(LEVELS).map_err(failed_run)?,
         Some(experiments) => {
             let query = LevelQuery { experiments, speeds };
-            let measured = attended(py, progress, false, move |told| {
-                compare_with(query, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+            let measured = attended(py, progress, false, move |watch| {
+                compare_with(query, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
             })?;
             measured.map_err(failed_run)?
         }
@@ -341,9 +342,9 @@ pub(crate) fn readings<'py>(
     frames: u64,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let ranked = attended(py, progress, false, move |told| {
+    let ranked = attended(py, progress, false, move |watch| {
         let bench = Bench::new(Level::Analytic).with_mig(seeds, frames);
-        rank(&bench, best, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+        rank(&bench, best, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     python(py, &ranked.map_err(failed_run)?)
 }

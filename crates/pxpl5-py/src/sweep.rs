@@ -121,13 +121,13 @@ impl Store {
     fn run(&mut self, py: Python<'_>, threads: usize, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
         let sweep = Arc::clone(&self.sweep);
-        let (store, result) = attended(py, progress, true, move |told| {
+        let (store, result) = attended(py, progress, true, move |watch| {
             let of = sweep.space().points();
             let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };
-            let result = run_stoppable(&*sweep, &mut store, options, &told.stop_flag(), |_| {
+            let result = run_stoppable(&*sweep, &mut store, options, &watch.stop_flag(), |_| {
                 done += 1;
-                told.tell(done, of);
+                watch.report(done, of);
             });
             (store, result)
         })?;

@@ -38,8 +38,8 @@ pub(crate) fn volume_figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let scenes: Vec<_> = scenes.iter().map(|scene| Arc::clone(&scene.scene)).collect();
-    let all = attended(py, progress, false, move |told| {
-        figures::all(&scenes, &Threads::all(), |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+    let all = attended(py, progress, false, move |watch| {
+        figures::all(&scenes, &Threads::all(), |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     python(py, &all.map_err(wrong_setting)?)
 }

@@ -1,16 +1,16 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
+use crate::dry_run::DryRun;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
+use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
-use crate::rehearsal::DryRun;
-use crate::sums::{FinalResults, ObserverFactory};
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_wire::PeriodNumber;
@@ -77,7 +77,7 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
-    pub(crate) given_up: BTreeSet<Optimization>,
+    pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
@@ -85,7 +85,7 @@ pub struct Experiment {
     pub(crate) hmd: HmdConfig,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
-    pub(crate) rehearsed: Option<Arc<DryRun>>,
+    pub(crate) dry_run: Option<Arc<DryRun>>,
 }
 
 /// Functions by which a pipeline's closed form estimates results of an experiment, before or after a run.
@@ -123,7 +123,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: Keep::Everything,
-            given_up: BTreeSet::new(),
+            disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
             on_demand: false,
@@ -131,7 +131,7 @@ impl Experiment {
             hmd: HmdConfig::unc(),
             estimates: None,
             sums: None,
-            rehearsed: None,
+            dry_run: None,
         }
     }
 
@@ -189,8 +189,8 @@ impl Experiment {
 
     /// Disables an optimization of the simulator. No simulated time and no pixel changes, but the run takes longer.
     #[must_use]
-    pub fn without(mut self, saving: Optimization) -> Self {
-        self.given_up.insert(saving);
+    pub fn without(mut self, optimization: Optimization) -> Self {
+        self.disabled.insert(optimization);
         self
     }
 
@@ -245,7 +245,7 @@ impl Experiment {
     }
 
     /// Returns all records of a run of this experiment that remain in memory, without pictures.
-    pub(crate) fn settled<'a>(
+    pub(crate) fn final_results<'a>(
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,

@@ -61,7 +61,7 @@ pub struct Head {
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
     numbers: Numbers,
-    judge_at_m: Option<f64>,
+    evaluate_at_m: Option<f64>,
     pub(crate) seed: u64,
     raster: Raster,
     aim: Aim,
@@ -76,7 +76,7 @@ impl fmt::Debug for Head {
             .field("tracker", self.tracker.config())
             .field("predictor", &self.predictor)
             .field("numbers", &self.numbers)
-            .field("judge_at_m", &self.judge_at_m)
+            .field("evaluate_at_m", &self.evaluate_at_m)
             .field("seed", &self.seed)
             .field("raster", &self.raster)
             .field("aim", &self.aim)
@@ -129,7 +129,7 @@ impl Head {
             tracker,
             predictor,
             numbers: Numbers::Given,
-            judge_at_m: None,
+            evaluate_at_m: None,
             seed,
             raster: Raster::Plain,
             aim: Aim::Middle,
@@ -172,14 +172,14 @@ impl Head {
             let what = "distance at which errors are evaluated, m";
             return Err(HeadError::OutOfRange { what, found: metres, low, high });
         }
-        Ok(Self { judge_at_m: Some(metres), ..self })
+        Ok(Self { evaluate_at_m: Some(metres), ..self })
     }
 
     /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
     /// content.
     #[must_use]
-    pub const fn judge_at_m(&self) -> Option<f64> {
-        self.judge_at_m
+    pub const fn evaluate_at_m(&self) -> Option<f64> {
+        self.evaluate_at_m
     }
 
     /// Sets the meaning of the motion's poses: relative to the start of the scene's own motion, or in the world of the
@@ -286,8 +286,8 @@ impl Head {
             hash.setting("place", self.place.to_string());
         }
         // Settings that affect evaluation and display, then the given reports.
-        if let Some(metres) = self.judge_at_m {
-            hash.setting("judge_at_m", metres);
+        if let Some(metres) = self.evaluate_at_m {
+            hash.setting("evaluate_at_m", metres);
         }
         hash.setting("seed", self.seed);
         hash.setting("raster", self.raster);

@@ -5,11 +5,11 @@ use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
+use crate::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::summary::Summary;
-use crate::sums::FinalResults;
 use crate::tally::{Tally, of_picture};
 use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
@@ -62,15 +62,15 @@ impl Outcome {
 
     /// Returns all final results of the run and the records in memory, for evaluation after the run.
     #[must_use]
-    pub fn settled(&self) -> FinalResults<'_> {
-        let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
+    pub fn final_results(&self) -> FinalResults<'_> {
+        let all = self.experiment.final_results(&self.record, self.head.as_ref(), &self.notes);
         FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
     /// Returns the result of the streaming observer ([`Experiment::observed_by`]), if the result has the type `T`.
     #[must_use]
-    pub fn said<T: 'static>(&self) -> Option<&T> {
-        self.closed.said.as_deref()?.downcast_ref()
+    pub fn observed<T: 'static>(&self) -> Option<&T> {
+        self.closed.observed.as_deref()?.downcast_ref()
     }
 
     /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results without a streaming

@@ -4,11 +4,11 @@
 //! limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
 
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
+use crate::observers::FinalResults;
 use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::summary::retraces;
-use crate::sums::FinalResults;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::Samples;
@@ -152,14 +152,14 @@ impl Tally {
 
     /// Adds the times of counted pictures that lie in the result window. All records of these pictures must be
     /// complete.
-    pub(crate) fn take(&mut self, settled: &FinalResults<'_>) {
-        let FinalResults { pipeline, record, notes, window, .. } = *settled;
+    pub(crate) fn take(&mut self, results: &FinalResults<'_>) {
+        let FinalResults { pipeline, record, notes, window, .. } = *results;
         let Some(window) = window else { return };
         if self.window_from != Some(window.first_period) {
             // The window begins later than assumed, so all samples so far lie before the window.
             self.restart(window.first_period);
         }
-        let steady: Vec<PictureTimes> = settled.steady_pictures().copied().collect();
+        let steady: Vec<PictureTimes> = results.steady_pictures().copied().collect();
         if steady.is_empty() {
             return;
         }

@@ -4,10 +4,10 @@ use crate::assembled::Assembled;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::keep::Keep;
+use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
-use crate::sums::{FinalResults, StreamingObserver};
 use crate::tally::Tally;
 use pxpl5_machine::Record;
 use pxpl5_sim::KEPT_SAMPLES;
@@ -49,7 +49,7 @@ pub(crate) struct Window {
 pub(crate) struct Closed {
     pub(crate) tally: Tally,
     pub(crate) window: Option<ResultWindow>,
-    pub(crate) said: Option<Box<dyn Any + Send + Sync>>,
+    pub(crate) observed: Option<Box<dyn Any + Send + Sync>>,
     pub(crate) pictures: Vec<PictureTimes>,
 }
 
@@ -105,7 +105,7 @@ impl Window {
         let until = record.display().period_at(begin);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);
-        let all = experiment.settled(record, run.head.as_ref(), &run.notes);
+        let all = experiment.final_results(record, run.head.as_ref(), &run.notes);
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
@@ -123,10 +123,10 @@ impl Window {
     }
 
     /// Passes final results to all streaming observers.
-    fn take(&mut self, settled: &FinalResults<'_>) {
-        self.tally.take_arrivals(settled.arrivals, settled.record.message_span());
-        self.tally.take(settled);
-        self.sum.iter_mut().for_each(|sum| sum.take(settled));
+    fn take(&mut self, results: &FinalResults<'_>) {
+        self.tally.take_arrivals(results.arrivals, results.record.message_span());
+        self.tally.take(results);
+        self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
     /// Adds the remaining results of a run that ended in the period `reached`. Returns the complete results.
@@ -147,13 +147,13 @@ impl Window {
         // All remaining pictures and arrivals are final at the end of the run.
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let samples = self.samples;
-        let all = experiment.settled(record, head, notes);
+        let all = experiment.final_results(record, head, notes);
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
         let window = window.and_then(|window| window.not_before(experiment.results_from, every));
         self.take(&FinalResults { arrivals, pictures: &pictures, samples, window, ..all });
-        Closed { tally: self.tally, window, said: self.sum.map(|sum| sum.said()), pictures }
+        Closed { tally: self.tally, window, observed: self.sum.map(|sum| sum.result()), pictures }
     }
 }
 

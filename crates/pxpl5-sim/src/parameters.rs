@@ -5,7 +5,7 @@
 //! ```text
 //!                        +--> table.word_ns        code reads a plain public field
 //!  parameter_table! { }--+--> table.get("word_ns") files, sweeps and reports reach it by name
-//!                        +--> Table::INFOS         unit, standing, range, limits, source
+//!                        +--> Table::INFOS         unit, provenance, range, limits, source
 //!                        +--> table.check()        refuses what the model cannot take
 //! ```
 //!
@@ -46,7 +46,7 @@ mod value;
 
 pub use crate::{named, parameter_table};
 pub use error::ParameterError;
-pub use info::{ParameterInfo, Standing};
+pub use info::{ParameterInfo, Provenance};
 pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};

@@ -1,6 +1,6 @@
 //! Tests of tables through their interface.
 
-use pxpl5_sim::parameters::{ParameterError, ParameterTable, Standing, Value, parameter_table};
+use pxpl5_sim::parameters::{ParameterError, ParameterTable, Provenance, Value, parameter_table};
 
 parameter_table! {
     /// Numbers of both kinds, with limits and without.
@@ -77,7 +77,7 @@ fn tables_of_different_types_are_listed_together() {
     let entries: Vec<_> = tables.iter().flat_map(|table| table.entries()).collect();
     let values: Vec<_> = entries.iter().map(|entry| entry.value.to_string()).collect();
     assert_eq!(values, ["50", "12000", "2.5", "8"]);
-    assert_eq!(entries[2].info.standing, Standing::Derived);
+    assert_eq!(entries[2].info.provenance, Provenance::Derived);
 }
 
 #[test]

@@ -5,13 +5,13 @@ use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
 use address_recalculation::priority::{draws_per_s, saved_percent};
 use pxpl5_sim::figures::Definition;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 
 /// Number of segments in each display memory, with and without cutting objects at the borders of cells (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement: statement.into(), source: "derived", value, unit, standing: Standing::Derived }
+    Definition { id, statement: statement.into(), source: "derived", value, unit, provenance: Provenance::Derived }
 }
 
 /// Returns all definitions.

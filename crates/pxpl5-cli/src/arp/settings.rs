@@ -77,11 +77,11 @@ impl WalkArgs {
     ///
     /// Returns an error that names the wrong file, option or setting, the expected value and the value found.
     pub(super) fn gather(&self) -> Result<(Arc<Scene>, WalkPlan), CliError> {
-        let (scene, said) = self.said()?;
+        let (scene, given) = self.given()?;
         let mut plan = WalkPlan::usual();
         let mut table = None;
         // A lens table is read last, because its size depends on the picture that the other settings choose.
-        for (path, value, place) in &said {
+        for (path, value, place) in &given {
             match value.strip_prefix("table:").filter(|_| path == LENS) {
                 Some(file) => table = Some(file),
                 None => plan.set(path, value, place)?,
@@ -95,7 +95,7 @@ impl WalkArgs {
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
-        scenes::tell(&scene, self.quiet);
+        scenes::print_warnings(&scene, self.quiet);
         Ok((scene, plan))
     }
 
@@ -126,8 +126,8 @@ impl WalkArgs {
     }
 
     /// Returns the scene's name, and all settings in the order in which they apply: file, options, `--set`.
-    fn said(&self) -> Result<(String, GivenSettings), CliError> {
-        let mut said = GivenSettings::new();
+    fn given(&self) -> Result<(String, GivenSettings), CliError> {
+        let mut given = GivenSettings::new();
         let mut scene = "gallery".to_owned();
         if let Some(path) = &self.file {
             let place = path.display().to_string();
@@ -139,7 +139,7 @@ impl WalkArgs {
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),
-                    _ => said.push((path, plain(&value), place.clone())),
+                    _ => given.push((path, plain(&value), place.clone())),
                 }
             }
         }
@@ -153,16 +153,16 @@ impl WalkArgs {
             ("source", "--source", &self.source),
         ];
         for (path, option, text) in options {
-            said.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
+            given.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
         }
         // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             let (path, value) = assignment
                 .split_once('=')
                 .ok_or_else(|| CliError::usage(format!("--set: expected PATH=VALUE, found {assignment}")))?;
-            said.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
+            given.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
         }
-        Ok((scene, said))
+        Ok((scene, given))
     }
 }
 

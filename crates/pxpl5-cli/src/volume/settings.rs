@@ -144,7 +144,7 @@ impl VolumeSettingArgs {
     /// Fails when the scene does not exist or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
         let scene = load(&self.scene, self.triangles)?;
-        scenes::tell(&scene, self.settings.quiet);
+        scenes::print_warnings(&scene, self.settings.quiet);
         Ok(scene)
     }
 

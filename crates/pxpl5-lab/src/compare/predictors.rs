@@ -52,8 +52,8 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let showing = head.raster().into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorError| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
-    let judged = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
-    let best = judged.reduce(|best, next| if next.1 < best.1 { next } else { best });
+    let evaluated = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
+    let best = evaluated.reduce(|best, next| if next.1 < best.1 { next } else { best });
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
@@ -82,7 +82,7 @@ fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, Experiment
         Ok(outcome) => PredictorError {
             numbers: outcome.head().map(|views| *views.head().predictor()),
             training: outcome.head().and_then(|views| views.head().training().copied()),
-            error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.judged > 0),
+            error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.evaluated > 0),
             ..blank
         },
         Err(error) => PredictorError { failure: Some(error.to_string()), ..blank },

@@ -346,7 +346,7 @@ impl CompareQuery {
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.rehearsed.clone());
+            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.dry_run.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
@@ -401,9 +401,9 @@ impl Comparison {
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
-        let judged =
+        let evaluated =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
-        let rivals = judged.filter(|row| row.pipeline != DELAYED_VIDEO);
+        let rivals = evaluated.filter(|row| row.pipeline != DELAYED_VIDEO);
         let timed = rivals.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }

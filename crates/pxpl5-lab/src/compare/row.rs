@@ -181,8 +181,8 @@ impl ComparisonRow {
     /// Returns the predictor with the smallest mean error, or `None` if no predictor was evaluated.
     #[must_use]
     pub fn best_predictor(&self) -> Option<PredictorMean> {
-        let judged = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
-        judged.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
+        let evaluated = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
+        evaluated.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
     }
 
     /// Returns true if every picture that was due was shown in time.
@@ -256,30 +256,30 @@ impl ErrorSpread {
     /// over time, because further seeds do not move the head otherwise.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
-        let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
-        let px: Vec<f64> = judged.iter().map(|trial| trial.errors.pixels.mean).collect();
-        let deg: Vec<f64> = judged.iter().map(|trial| trial.errors.degrees.mean).collect();
-        let mut all: Vec<f64> = judged.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
+        let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();
+        let px: Vec<f64> = evaluated.iter().map(|trial| trial.errors.pixels.mean).collect();
+        let deg: Vec<f64> = evaluated.iter().map(|trial| trial.errors.degrees.mean).collect();
+        let mut all: Vec<f64> = evaluated.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
         let mut spread = Self {
             mean_px: MeanInterval::of(&px, confidence),
             bootstrap: None,
             mean_deg: MeanInterval::of(&deg, confidence),
             pixels: Percentiles::of(all.iter().copied()),
-            n: judged.iter().map(|trial| trial.errors.judged).sum(),
+            n: evaluated.iter().map(|trial| trial.errors.evaluated).sum(),
             distribution_px: hundredths(&all),
         };
         if sampling.is_one_motion || px.len() < 2 {
-            spread.bootstrap_over_time(&judged, confidence);
+            spread.bootstrap_over_time(&evaluated, confidence);
         }
         spread
     }
 
     /// Replaces the interval of the mean by that of a bootstrap over the fields. The interval has no ends if the run is
     /// too short for a bootstrap.
-    fn bootstrap_over_time(&mut self, judged: &[&Trial], confidence: f64) {
+    fn bootstrap_over_time(&mut self, evaluated: &[&Trial], confidence: f64) {
         let mean = self.mean_px.mean;
-        let bootstrap = BlockBootstrap::of(&mean_of_fields(judged));
+        let bootstrap = BlockBootstrap::of(&mean_of_fields(evaluated));
         let (low, high) = bootstrap.as_ref().map_or((f64::NAN, f64::NAN), |it| it.interval(mean, confidence));
         let method = if bootstrap.is_some() { IntervalMethod::MovingBlockBootstrap } else { IntervalMethod::None };
         self.mean_px = MeanInterval { low, high, method, ..self.mean_px };
@@ -290,9 +290,9 @@ impl ErrorSpread {
 }
 
 /// Returns the mean error of each evaluated field in the order of time, averaged over the seeds.
-fn mean_of_fields(judged: &[&Trial]) -> Vec<f64> {
+fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
     let mut fields: BTreeMap<PeriodNumber, (f64, f64)> = BTreeMap::new();
-    for field in judged.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
+    for field in evaluated.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
         let (sum, n) = fields.entry(field.field).or_default();
         *sum += field.mean_px;
         *n += 1.0;

@@ -29,7 +29,7 @@ pub(super) struct Trial {
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
     /// Result of the dry run that preceded the run.
-    pub(super) rehearsed: Option<Arc<DryRun>>,
+    pub(super) dry_run: Option<Arc<DryRun>>,
     /// Last picture of the run, if the run computed pixels and showed a picture.
     pub(super) picture: Option<LastPicture>,
 }
@@ -49,7 +49,7 @@ impl ComparedPipeline {
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
-        let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
+        let outcome = experiment.after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
 }
@@ -83,7 +83,7 @@ impl Trial {
             shown: report.pictures,
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
-            rehearsed: outcome.experiment().rehearsal().cloned(),
+            dry_run: outcome.experiment().dry_run().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }

@@ -63,7 +63,7 @@ impl HeadChoice {
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
         let head =
             head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
-        let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
+        let head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
@@ -115,7 +115,7 @@ impl HeadChoice {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
         all.extend(reprojection::settings(self.head.raster()));
-        all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
+        all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {
             let Replay { format, end } = &self.replay;
@@ -189,9 +189,9 @@ fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
     Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(name))))
 }
 
-fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
-    match file.number("head.judge_at")? {
-        Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.judge_at", &error)),
+fn evaluated(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
+    match file.number("head.evaluate_at")? {
+        Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.evaluate_at", &error)),
         None => Ok(head),
     }
 }

@@ -60,7 +60,7 @@ const COMMON: &[(&str, &str)] = &[
           given (those of tracking.filter)",
     ),
     (
-        "head.judge_at",
+        "head.evaluate_at",
         "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content",
     ),
     (

@@ -161,7 +161,7 @@ impl Settings {
         let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
         let changed = own.filter(|own| *own != parameter.value);
         let changed = changed.map_or_else(String::new, |own| format!("; the preset has {own}"));
-        let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.standing);
+        let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.provenance);
         self.remarks.insert(key.to_owned(), remark);
         self.put(key, toml_number(parameter.value));
     }

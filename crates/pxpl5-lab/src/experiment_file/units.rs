@@ -25,7 +25,7 @@ const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, P
 const UNITS: [(&str, &str); 8] = [
     ("motion.distance", "m"),
     ("motion.deg_per_s", "deg/s"),
-    ("head.judge_at", "m"),
+    ("head.evaluate_at", "m"),
     ("hmd.field_of_view", "deg"),
     ("hmd.eye_distance", "mm"),
     ("hmd.near", "m"),

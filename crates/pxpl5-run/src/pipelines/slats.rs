@@ -238,14 +238,14 @@ impl Pipeline for Slats {
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
         // that period. Under a backup, a later retrace of the same lines may show the picture.
-        let judged = |times: &PictureTimes| {
+        let evaluated = |times: &PictureTimes| {
             let field = times.picture.period_drawn_for();
             let shown = record.display().period_at(times.shown_at);
             let last =
                 if backup.is_some() && times.end != PictureResult::Shown { field.0 + LATER_RETRACES } else { shown.0 };
             record.tick(PeriodNumber(last).next()) <= end
         };
-        times.filter(judged).collect()
+        times.filter(evaluated).collect()
     }
 
     fn can_discard_records(&self) -> bool {

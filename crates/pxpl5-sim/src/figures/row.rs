@@ -1,12 +1,12 @@
 //! A row that compares a published figure with a model, and a definition, which is not compared.
 
-use crate::parameters::Standing;
+use crate::parameters::Provenance;
 use serde::Serialize;
 use std::borrow::Cow;
 
 /// Provenance of a row: the relation between a published figure and the choices made in the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(tag = "standing", content = "fitted", rename_all = "lowercase")]
+#[serde(tag = "provenance", content = "fitted", rename_all = "lowercase")]
 pub enum Basis {
     /// An independent check: nothing was chosen to reproduce the figure.
     Free,
@@ -64,7 +64,7 @@ pub struct FigureRow {
     /// without numbers.
     pub published: f64,
     /// Provenance of the published number: printed or derived.
-    pub origin: Standing,
+    pub origin: Provenance,
     /// Half the width of the range that the paper prints, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
     /// Least and greatest simulated value that count as agreement.
@@ -122,7 +122,7 @@ impl FigureRow {
             experiment: "",
             scene: None,
             published,
-            origin: Standing::Published,
+            origin: Provenance::Published,
             spread: None,
             accepted,
             simulated,
@@ -186,5 +186,5 @@ pub struct Definition {
     pub value: f64,
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }

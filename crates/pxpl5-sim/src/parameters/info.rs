@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The provenance of a parameter's value: printed, calculated or assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Standing {
+pub enum Provenance {
     /// The value is printed in a paper or manual that the authors of this program have read.
     Published,
     /// The value follows by arithmetic from published figures.
@@ -15,13 +15,13 @@ pub enum Standing {
     Assumed,
 }
 
-impl Standing {
+impl Provenance {
     /// Every provenance with its name, the best first.
     pub const ALL: [(&str, Self); 3] =
         [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
 
-crate::parameters::named!(Standing, "provenance", Standing::ALL);
+crate::parameters::named!(Provenance, "provenance", Provenance::ALL);
 
 /// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -31,7 +31,7 @@ pub struct ParameterInfo {
     /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
     pub unit: &'static str,
     /// Provenance of the parameter's value: printed, calculated or assumed.
-    pub standing: Standing,
+    pub provenance: Provenance,
     /// Initial value of the parameter. The papers print this value or allow it.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.

@@ -27,7 +27,7 @@ macro_rules! parameter_table {
     ($(#[$meta:meta])* $vis:vis struct $name:ident {
         $(
             $(#[$doc:meta])*
-            $field:ident : $($real:ident =)? $value:literal, $unit:literal, $standing:ident,
+            $field:ident : $($real:ident =)? $value:literal, $unit:literal, $provenance:ident,
             $low:literal ..= $high:literal $(in $least:literal ..= $most:tt)?, $source:literal;
         )*
     }) => {
@@ -38,7 +38,7 @@ macro_rules! parameter_table {
             $(
                 $(#[$doc])*
                 #[doc = concat!(
-                    "\n\nUnit: ", $unit, ". ", stringify!($standing), ", ", stringify!($low), " to ", stringify!($high),
+                    "\n\nUnit: ", $unit, ". ", stringify!($provenance), ", ", stringify!($low), " to ", stringify!($high),
                     $(" (possible: ", stringify!($least), " to ", stringify!($most), ")",)? ": ", $source, "."
                 )]
                 pub $field: $crate::number!(type $($real)?),
@@ -53,7 +53,7 @@ macro_rules! parameter_table {
             $vis const INFOS: &'static [$crate::parameters::ParameterInfo] = &[$($crate::parameters::ParameterInfo {
                 name: stringify!($field),
                 unit: $unit,
-                standing: $crate::parameters::Standing::$standing,
+                provenance: $crate::parameters::Provenance::$provenance,
                 papers: $crate::number!(value $($real)? : $value),
                 range: $crate::number!(pair $($real)? : $low, $high),
                 limits: $crate::number!(pair $($real)? : $low, $high $(, $least, $most)?),

@@ -92,7 +92,7 @@ fn definitions(text: &mut String, all: &[Definition]) {
         ("#", |one| one.id.to_owned()),
         ("number", |one| one.statement.to_string()),
         ("source", |one| one.source.to_owned()),
-        ("provenance", |one| one.standing.to_string()),
+        ("provenance", |one| one.provenance.to_string()),
         ("value", |one| format!("{} {}", number(one.value), one.unit)),
     ];
     let _ = write!(
@@ -167,7 +167,7 @@ fn numbers(text: &mut String) {
         let _ = writeln!(
             text,
             "| `{path}` | {value} | {} | {} | {low} to {high} | {} |",
-            info.unit, info.standing, info.source
+            info.unit, info.provenance, info.source
         );
     }
 }

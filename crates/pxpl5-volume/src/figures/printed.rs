@@ -2,7 +2,7 @@
 
 use crate::error::VolumeError;
 use pxpl5_sim::figures::FigureRow;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
@@ -145,7 +145,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
             marked(99),
         ),
         FigureRow {
-            origin: Standing::Derived,
+            origin: Provenance::Derived,
             ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", (209.0, 2.0), marked(SLICE))
         },
         row("D8", "queries between two clears", "queries", (f64::from(queries), 0.0), per_batch),

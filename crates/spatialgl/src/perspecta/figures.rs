@@ -8,7 +8,7 @@ use crate::{
     packed_word,
 };
 use pxpl5_sim::figures::{Definition, FigureRow, around};
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 
 /// Returns the row of a figure. The values that differ from the published one by at most `half_digit` count as
 /// agreement.
@@ -25,8 +25,8 @@ pub fn row(
 }
 
 /// Returns the provenance of a number: printed in the paper if `id` begins with P, and otherwise derived.
-fn origin(id: &str) -> Standing {
-    if id.starts_with('P') { Standing::Published } else { Standing::Derived }
+fn origin(id: &str) -> Provenance {
+    if id.starts_with('P') { Provenance::Published } else { Provenance::Derived }
 }
 
 /// Returns the section of the paper that prints the number with this identifier.
@@ -78,7 +78,7 @@ pub fn definitions() -> Vec<Definition> {
 }
 
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement: statement.into(), source: source(id), value, unit, standing: origin(id) }
+    Definition { id, statement: statement.into(), source: source(id), value, unit, provenance: origin(id) }
 }
 
 /// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).

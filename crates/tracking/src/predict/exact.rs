@@ -28,7 +28,7 @@ impl<M: Motion> ExactPredictor<M> {
 
 impl<M: Motion + Send> Predictor for ExactPredictor<M> {
     fn observe(&mut self, report: &TrackerReport) {
-        if self.gate.judge(report) != Verdict::Reject {
+        if self.gate.check(report) != Verdict::Reject {
             self.newest = Some(*report);
         }
     }

@@ -46,7 +46,7 @@ impl Gate {
         Self { limits, last: None, jumps_in_a_row: 0, counts: ReportCounts::default() }
     }
 
-    pub(super) fn judge(&mut self, report: &TrackerReport) -> Verdict {
+    pub(super) fn check(&mut self, report: &TrackerReport) -> Verdict {
         let verdict = self.verdict(report);
         if verdict != Verdict::Reject {
             self.last = Some(*report);

@@ -38,7 +38,7 @@ impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilterPair<P, O> {
         let stamps = (report.position_measured_ps, report.measured_ps);
         // The gate accepts quaternions of nearly unit length.
         let orientation = report.pose.orientation.normalize();
-        match self.gate.judge(report) {
+        match self.gate.check(report) {
             Verdict::Reject => return,
             Verdict::Restart => {
                 self.position.restart(stamps.0, report.pose.position);

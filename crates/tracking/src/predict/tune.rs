@@ -62,10 +62,10 @@ pub struct Tuned {
     pub training: Option<Training>,
 }
 
-/// Returns a seed for the tracker's noise during the tuning. It always differs from `judged`, the seed of the noise in
+/// Returns a seed for the tracker's noise during the tuning. It always differs from `evaluated_seed`, the seed of the noise in
 /// the evaluated run.
-pub fn training_seed(judged: u64) -> u64 {
-    if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
+pub fn training_seed(evaluated_seed: u64) -> u64 {
+    if evaluated_seed == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
 
 /// Finds the predictor settings with the least mean error on a motion. Predictions are for `interval_ps` after the

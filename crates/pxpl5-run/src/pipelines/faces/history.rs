@@ -1,9 +1,9 @@
 //! History of the cube faces that were drawn around a head, and the latency of head rotation.
 
+use crate::observers::FinalResults;
 use crate::outcome::Outcome;
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming, RotationLatency};
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
-use crate::sums::FinalResults;
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_machine::Record;
 use pxpl5_wire::display::Display;
@@ -84,15 +84,15 @@ impl OrientationTiming {
     /// Returns the orientation timing of a run, or `None` if the run's display does not accept cube faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::of_run(&outcome.settled())
+        Self::of_run(&outcome.final_results())
     }
 
     /// Returns the orientation timing of a run that has ended or is in progress. Returns `None` if the run's display
     /// does not accept cube faces.
     #[must_use]
-    pub fn of_run(settled: &FinalResults<'_>) -> Option<Self> {
-        let link = settled.record.config().host.link_span(ORIENTATION_WORDS);
-        Self::before(settled.record.display(), link, settled.aim)
+    pub fn of_run(results: &FinalResults<'_>) -> Option<Self> {
+        let link = results.record.config().host.link_span(ORIENTATION_WORDS);
+        Self::before(results.record.display(), link, results.aim)
     }
 }
 
@@ -108,7 +108,7 @@ impl Outcome {
     /// empty without a tracked head, or if the display does not accept cube faces.
     #[must_use]
     pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
-        let run = self.settled();
+        let run = self.final_results();
         run.rotation_latencies(PeriodNumber::FIRST.until(run.until))
     }
 }

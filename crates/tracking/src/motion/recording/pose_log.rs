@@ -77,7 +77,7 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], Recordi
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if the file has one JSON object per line, judged by its first line.
+/// Returns true if the file has one JSON object per line, evaluated by its first line.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }

@@ -63,8 +63,8 @@ impl ErrorSum {
     }
 
     /// Returns the pixel errors, and the results of the eye if pixels are lit for some time or pictures are moved.
-    pub(crate) fn said(self) -> (PixelErrors, Option<EyeReport>) {
-        self.collected.map(Collected::said).unwrap_or_default()
+    pub(crate) fn result(self) -> (PixelErrors, Option<EyeReport>) {
+        self.collected.map(Collected::result).unwrap_or_default()
     }
 }
 
@@ -239,13 +239,13 @@ impl Evaluation {
     fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
-        let (error, unjudged) = match seen {
+        let (error, not_evaluated) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
             Seen::Before => (None, &mut errors.before),
             Seen::Complete(drawn) => (self.error_of(pixel, &drawn), &mut errors.behind),
         };
-        *unjudged += u64::from(error.is_none());
+        *not_evaluated += u64::from(error.is_none());
         error
     }
 
@@ -398,13 +398,13 @@ impl Collected {
         }
     }
 
-    fn said(self) -> (PixelErrors, Option<EyeReport>) {
-        let eye = self.eye.said();
+    fn result(self) -> (PixelErrors, Option<EyeReport>) {
+        let eye = self.eye.result();
         let [pixels, degrees] = self.grid;
         let [centre_px, centre_deg] = self.centre.map(|errors| errors.percentiles());
         let of_grid = pixels.percentiles();
         let errors = PixelErrors {
-            judged: of_grid.n,
+            evaluated: of_grid.n,
             pixels: of_grid,
             degrees: degrees.percentiles(),
             centre_px,
@@ -442,12 +442,12 @@ mod tests {
     }
 
     impl StreamingObserver for Watched {
-        fn take(&mut self, settled: &FinalResults<'_>) {
-            self.sum.take(settled);
+        fn take(&mut self, results: &FinalResults<'_>) {
+            self.sum.take(results);
             self.held.extend(self.sum.judging.iter().map(|judging| judging.shown.held()));
         }
 
-        fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
             Box::new(self.held)
         }
     }
@@ -468,7 +468,7 @@ mod tests {
             let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
             let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
             let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
-            let held: &Vec<usize> = outcome.said().expect("watched");
+            let held: &Vec<usize> = outcome.observed().expect("watched");
             assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
         }
     }
@@ -483,12 +483,12 @@ mod tests {
             let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
-        let (said, eye) = collected.said();
+        let (said, eye) = collected.result();
         assert_eq!(eye, None);
         let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
         assert_eq!(kept, [1, 2, 3]);
         assert_eq!(
-            (said.judged, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (said.evaluated, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
             (10, 10, 10, 5, 5)
         );
         assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);

@@ -48,7 +48,7 @@ impl RotationLatencySum {
         self.next = run.until;
     }
 
-    pub(crate) fn said(self) -> Turns {
+    pub(crate) fn result(self) -> Turns {
         if self.total.count() == 0 {
             return Turns::default();
         }

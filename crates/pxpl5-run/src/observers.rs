@@ -78,10 +78,10 @@ impl FinalResults<'_> {
 /// discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
-    fn take(&mut self, settled: &FinalResults<'_>);
+    fn take(&mut self, results: &FinalResults<'_>);
 
     /// Returns the observer's result. Called once, after the last call of `take`.
-    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
+    fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 
 /// Function that creates the streaming observer of a run.
