@@ -208,7 +208,7 @@ pub mod device {
     pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
     pub use pxpl5_wire::display::{
         BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
-        DoubleBuffer, Light, LightTimes, Scan, Surface,
+        DoubleBuffer, LightTimes, PixelLight, ScanOrder, Surface,
     };
 }
 

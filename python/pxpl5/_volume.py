@@ -41,7 +41,7 @@ def volume_keys() -> list[str]:
 
 
 def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table:
-    """Returns a row for each figure of the SpatialGL paper, with expected value, computed value and provenance (``provenance``).
+    """Returns a row for each figure of the SpatialGL paper, with published value, simulated value and provenance.
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """

@@ -4,9 +4,9 @@ use crate::address::{AddressUnit, Footprint};
 use crate::composition::{Composition, CompositionOrder};
 use crate::error::ArpError;
 use crate::face::FaceGeometry;
-use crate::lens::{Lens, LensTable, Picture, unit_words};
+use crate::lens::{Lens, LensPicture, LensTable, unit_words};
 use crate::orientation::Orientation;
-use crate::scan::{Latch, Scan};
+use crate::scan::{FaceScan, Latch};
 use crate::texel::TexelFormat;
 use crate::timing::{ArpTiming, ScanTiming};
 use pxpl5_sim::parameters::check;
@@ -62,9 +62,9 @@ impl ArpConfig {
     }
 
     #[must_use]
-    pub fn picture(&self) -> Picture {
+    pub fn picture(&self) -> LensPicture {
         let height = self.scan.visible_lines as u32 * 2;
-        Picture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
+        LensPicture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
     }
 
     /// Returns the table of viewing vectors.
@@ -100,8 +100,8 @@ impl ArpConfig {
     /// # Errors
     ///
     /// Fails in the same cases as [`ArpConfig::check`].
-    pub fn scan(&self) -> Result<Scan, ArpError> {
-        Scan::new(self.scan, &self.timing)
+    pub fn scan(&self) -> Result<FaceScan, ArpError> {
+        FaceScan::new(self.scan, &self.timing)
     }
 
     #[must_use]

@@ -34,7 +34,7 @@ pub enum Lens {
 
 /// Size and viewing angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picture {
+pub struct LensPicture {
     /// Number of pixels in a line.
     pub width: u32,
     /// Number of lines in a frame.
@@ -43,7 +43,7 @@ pub struct Picture {
     pub horizontal_deg: f64,
 }
 
-impl Picture {
+impl LensPicture {
     /// Returns the offset of a pixel's middle from the picture's middle, in pixels to the right and downwards.
     fn offset(&self, x: u32, y: u32) -> [f64; 2] {
         [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
@@ -106,7 +106,7 @@ impl Lens {
     /// # Errors
     ///
     /// [`ArpError::Lens`] describes the expected and the found value.
-    pub fn check(&self, picture: &Picture) -> Result<(), ArpError> {
+    pub fn check(&self, picture: &LensPicture) -> Result<(), ArpError> {
         let widest = if matches!(self, Self::Flat | Self::Radial { .. }) { WIDEST_FLAT_DEG } else { 360.0 };
         let angle = picture.horizontal_deg;
         if !(angle > 0.0 && angle <= widest) {
@@ -124,7 +124,7 @@ impl Lens {
     ///
     /// x points right and y up. The head looks along -z.
     #[must_use]
-    pub fn view(&self, picture: &Picture, x: u32, y: u32) -> Vector {
+    pub fn view(&self, picture: &LensPicture, x: u32, y: u32) -> Vector {
         let [right, down] = picture.offset(x, y);
         let focal = f64::from(picture.width) / 2.0 / picture.tangent();
         match self {
@@ -150,7 +150,7 @@ impl Lens {
     /// # Errors
     ///
     /// [`ArpError::Table`] names the line, the expected and the found content.
-    pub fn read(reader: impl BufRead, picture: &Picture) -> Result<Self, ArpError> {
+    pub fn read(reader: impl BufRead, picture: &LensPicture) -> Result<Self, ArpError> {
         let wanted = picture.width as usize * picture.height as usize;
         let mut vectors = Vec::new();
         let mut last = 0;
@@ -197,7 +197,7 @@ fn is_direction(vector: Vector) -> bool {
     square.is_normal()
 }
 
-fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
+fn check_table(vectors: &[Vector], picture: &LensPicture) -> Result<(), ArpError> {
     let wanted = picture.width as usize * picture.height as usize;
     if vectors.len() != wanted {
         let expected = format!("{wanted} vectors for {} x {} pixels", picture.width, picture.height);
@@ -226,7 +226,7 @@ fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
     Err(ArpError::Lens { expected, found: format!("{least} for k1 {k1}, k2 {k2}") })
 }
 
-fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
+fn equidistant(from_middle: [f64; 2], picture: &LensPicture) -> Vector {
     let half = f64::from(picture.width) / 2.0;
     let [right, down] = from_middle.map(|p| p / half);
     let distance = libm::hypot(right, down);
@@ -254,13 +254,13 @@ impl LensTable {
     /// # Errors
     ///
     /// Fails in the same cases as [`Lens::check`].
-    pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
+    pub fn new(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Result<Self, ArpError> {
         lens.check(picture)?;
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
     /// Creates the table of viewing vectors for a lens that has already been checked.
-    pub(crate) fn of_checked(lens: &Lens, picture: &Picture, vector_bits: u64) -> Self {
+    pub(crate) fn of_checked(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
             for x in 0..picture.width {

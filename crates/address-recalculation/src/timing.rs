@@ -1,8 +1,9 @@
 //! All parameters of the display, with their sources.
 
 use crate::error::ArpError;
+use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{MAX, ParameterTable, check};
-use pxpl5_sim::{Clock, Span};
+use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Word lengths, memories and stage time of the pipeline.
@@ -123,15 +124,30 @@ impl ScanTiming {
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
         check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;
-        self.clocks()
-            .ok_or_else(|| ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned()))?;
-        Ok(())
+        self.signal().map(|_| ()).ok_or_else(too_slow)
     }
 
-    /// Returns the pixel clock and the field clock. Returns `None` if a parameter is too large.
-    pub(crate) fn clocks(&self) -> Option<[Clock; 2]> {
-        let pixels = self.frame_lines.checked_mul(self.line_pixels)?;
-        let field = Clock::new(self.pixel_ps.checked_mul(pixels)?, self.pixel_divisor.checked_mul(2)?)?;
-        Some([Clock::new(self.pixel_ps, self.pixel_divisor)?, field])
+    /// Returns the video signal that this table describes.
+    pub(crate) fn video(&self) -> Result<Video, ArpError> {
+        self.check()?;
+        self.signal().ok_or_else(too_slow)
     }
+
+    fn signal(&self) -> Option<Video> {
+        Video::new(VideoNumbers {
+            pixel_ps: self.pixel_ps,
+            pixel_divisor: self.pixel_divisor,
+            line_pixels: self.line_pixels,
+            frame_lines: self.frame_lines,
+            visible_pixels: self.visible_pixels,
+            visible_lines: self.visible_lines,
+            left_blanking: self.left_blanking,
+            top_blanking: self.top_blanking,
+        })
+    }
+}
+
+/// Returns the error of a pixel clock whose fields are too long.
+fn too_slow() -> ArpError {
+    ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned())
 }

@@ -18,7 +18,7 @@ pub const BUDGET: u64 = 10_000;
 
 /// One vector: a program, the state before its run and the state expected after its run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-pub struct Vector {
+pub struct TestVector {
     /// Identifier, unique in its file.
     pub id: String,
     /// Group of the vector within the collection.
@@ -176,13 +176,13 @@ pub struct MalformedLine {
 ///
 /// # Errors
 /// Returns the error of the first line that does not contain a valid vector.
-pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
+pub fn parse(text: &str) -> Result<Vec<TestVector>, MalformedLine> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     lines.map(|(n, line)| parse_line(n + 1, line)).collect()
 }
 
-fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
-    let vector: Vector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
+fn parse_line(line: usize, text: &str) -> Result<TestVector, MalformedLine> {
+    let vector: TestVector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
     // Instruction addresses must be aligned.
     let unaligned = [vector.load, vector.entry, vector.stop].iter().any(|address| address % 4 != 0);
     if unaligned {
@@ -192,7 +192,7 @@ fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
     Ok(vector)
 }
 
-impl Vector {
+impl TestVector {
     fn memory(&self) -> Sparse {
         let mut memory = Sparse::default();
         for (n, word) in self.code.iter().enumerate() {
@@ -216,7 +216,7 @@ impl Vector {
     /// Resets a processor, runs the vector on it and compares the state after the run.
     ///
     /// # Errors
-    /// Returns the same errors as [`Vector::check`].
+    /// Returns the same errors as [`TestVector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
         // Registers are zero after the reset. Only the start address is set here.
@@ -261,7 +261,7 @@ impl VectorSummary {
 
 /// Runs all vectors on one processor. The processor is reset before each vector.
 #[must_use]
-pub fn run(vectors: &[Vector], config: Config) -> VectorSummary {
+pub fn run(vectors: &[TestVector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);
     let mut summary = VectorSummary::default();
     for vector in vectors {

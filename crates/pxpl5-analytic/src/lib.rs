@@ -126,7 +126,7 @@ fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
     let display: Option<&FrameBufferConfig> =
         config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());
     let display = display.ok_or_else(|| no_form("a display other than ntsc"))?;
-    Video::new(display.video).map_err(|error| ConfigError::Board(error.to_string()))
+    display.video.video().map_err(|error| ConfigError::Board(error.to_string()))
 }
 
 /// Compiles and runs the example of the README.

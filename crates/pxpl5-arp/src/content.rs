@@ -1,6 +1,6 @@
 //! Contents of a display memory.
 
-use crate::cube_faces::{CubeView, Drawing};
+use crate::cube_faces::{CubeView, DrawCounts};
 use crate::world::World;
 use address_recalculation::FaceSet;
 use address_recalculation::priority::{CellAssignment, PriorityError, RegionWarp};
@@ -36,7 +36,7 @@ impl Content {
     }
 
     /// Draws the memory's segments (parts of objects) into faces.
-    pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> Drawing {
+    pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> DrawCounts {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
 
@@ -49,7 +49,7 @@ impl Content {
 
 /// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
 pub(crate) fn warp(
-    settings: &crate::settings::Settings,
+    settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,
     memory: usize,
     places: [DVec3; 2],

@@ -37,4 +37,4 @@ mod rows;
 mod view;
 
 pub use depth::{DepthError, DepthRange};
-pub use view::{Corner, CubeView, Drawing};
+pub use view::{Corner, CubeView, DrawCounts};

@@ -1,6 +1,6 @@
 //! The view that the eye sees: cube faces are drawn from the memories' contents and then sampled by the display.
 
-use crate::cube_faces::Drawing;
+use crate::cube_faces::DrawCounts;
 use crate::error::WalkError;
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
@@ -9,25 +9,25 @@ use image::{Rgb, RgbImage};
 
 /// Cube faces of all memories, drawn only when a view needs them.
 #[derive(Clone, Debug)]
-pub struct Faces {
+pub struct WalkFaces {
     /// Cube faces of each display memory. The faces are empty before the memory's first update.
     pub memories: Vec<FaceSet>,
     /// Counts of the triangles drawn into the faces.
-    pub drawing: Drawing,
+    pub drawing: DrawCounts,
     config: ArpConfig,
     background: u32,
 }
 
-impl Faces {
+impl WalkFaces {
     /// Draws the current contents of all memories.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`crate::Settings::view`].
+    /// Fails in the same cases as [`crate::WalkSettings::view`].
     pub fn of(simulation: &Simulation<'_>) -> Result<Self, WalkError> {
         let settings = simulation.settings();
         let view = settings.view()?;
-        let mut drawing = Drawing::default();
+        let mut drawing = DrawCounts::default();
         let mut memories = Vec::new();
         // Memories without an update stay empty.
         for content in simulation.shown() {
@@ -72,7 +72,7 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Faces::seen`].
+    /// Fails in the same cases as [`WalkFaces::seen`].
     pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), WalkError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);

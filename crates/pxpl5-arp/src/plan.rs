@@ -2,9 +2,9 @@
 
 use crate::error::WalkError;
 use crate::hall::Route;
-use crate::settings::{PolicyKind, Settings, SourceKind};
+use crate::settings::{PolicyKind, SourceKind, WalkSettings};
 use address_recalculation::priority::Falloff;
-use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, Picture};
+use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, LensPicture};
 use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 use std::collections::BTreeMap;
 
@@ -40,10 +40,10 @@ const CHOICES: [&str; 10] = [
 /// have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct WalkPlan {
     /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
-    chosen: Settings,
+    chosen: WalkSettings,
     is_segmented: Option<bool>,
     has_cascade: Option<bool>,
     threshold: Option<ThresholdChoice>,
@@ -85,14 +85,14 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
 /// A table of parameters, and the first part of their paths.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
-impl Plan {
+impl WalkPlan {
     /// Returns the default plan: objects cut at the borders of cells and warped, an ideal renderer, half a minute at 1
     /// m/s.
     #[must_use]
     pub fn usual() -> Self {
         Self {
             walk: WalkNumbers::PAPERS,
-            chosen: Settings::WARPED,
+            chosen: WalkSettings::WARPED,
             is_segmented: None,
             has_cascade: None,
             threshold: None,
@@ -178,7 +178,7 @@ impl Plan {
 
     /// Returns the size and viewing angle of the display's picture. A lens table must match both.
     #[must_use]
-    pub fn picture(&self) -> Picture {
+    pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()
     }
 
@@ -191,8 +191,8 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Settings::check`].
-    pub fn settings(&self) -> Result<Settings, WalkError> {
+    /// Fails in the same cases as [`WalkSettings::check`].
+    pub fn settings(&self) -> Result<WalkSettings, WalkError> {
         let mut settings = self.chosen.clone();
         // Fill in the defaults that depend on other settings.
         let is_of_cells = settings.policy == PolicyKind::Cells;

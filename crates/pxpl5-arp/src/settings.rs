@@ -58,7 +58,7 @@ const FAR_M: f64 = 100.0;
 
 /// Settings of an experiment, without the scene and the viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
@@ -73,7 +73,7 @@ pub struct Settings {
     pub source: SourceKind,
 }
 
-impl Settings {
+impl WalkSettings {
     /// Settings with objects cut but not warped, cells of the size fitted to table 1, and an ideal renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,

@@ -3,7 +3,7 @@
 
 use crate::content::{Content, warp};
 use crate::error::WalkError;
-use crate::settings::{PolicyKind, Settings, SourceKind};
+use crate::settings::{PolicyKind, SourceKind, WalkSettings};
 use crate::source::{Job, Queue};
 use crate::world::World;
 use address_recalculation::priority::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
@@ -58,7 +58,7 @@ pub struct FrameOutcome {
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
     world: &'a World,
-    settings: Settings,
+    settings: WalkSettings,
     units: Vec<Unit>,
     policy: Policy,
     queue: Queue,
@@ -72,8 +72,8 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Settings::check`].
-    pub fn new(world: &'a World, settings: &Settings) -> Result<Self, WalkError> {
+    /// Fails in the same cases as [`WalkSettings::check`].
+    pub fn new(world: &'a World, settings: &WalkSettings) -> Result<Self, WalkError> {
         settings.check()?;
         // With segmentation the policy assigns segments, without it whole objects.
         let units = units(world, settings.is_segmented);
@@ -101,7 +101,7 @@ impl<'a> Simulation<'a> {
     }
 
     #[must_use]
-    pub const fn settings(&self) -> &Settings {
+    pub const fn settings(&self) -> &WalkSettings {
         &self.settings
     }
 

@@ -1,7 +1,7 @@
 //! A complete walk of the viewer through a scene, with counters of updates and draws.
 
 use crate::error::WalkError;
-use crate::settings::{Settings, SourceKind};
+use crate::settings::{SourceKind, WalkSettings};
 use crate::simulation::{FrameOutcome, Simulation};
 use crate::tears::Tears;
 use crate::world::World;
@@ -106,7 +106,7 @@ impl WalkTally {
 /// Fails in the same cases as [`Simulation::new`].
 pub fn walk(
     world: &World,
-    settings: &Settings,
+    settings: &WalkSettings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
 ) -> Result<WalkTally, WalkError> {
@@ -116,7 +116,7 @@ pub fn walk(
 /// Walks through a world, and returns the final state of the simulation together with the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
-    settings: &Settings,
+    settings: &WalkSettings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
 ) -> Result<(Simulation<'a>, WalkTally), WalkError> {

@@ -2,7 +2,7 @@
 //! is stopped early if its first fields show that the whole run would exceed a limit.
 
 use crate::error::CliError;
-use crate::estimate::{Estimate, Study, Work};
+use crate::estimate::{Estimate, RunWork, Study};
 use crate::numbers::{count_of, whole};
 use clap::Args;
 use std::cell::OnceCell;
@@ -65,7 +65,7 @@ impl BudgetArgs {
     /// # Errors
     ///
     /// Returns the estimate and advice on how to reduce the work.
-    pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
+    pub(crate) fn admit(&self, work: &RunWork) -> Result<(), CliError> {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
@@ -76,7 +76,7 @@ impl BudgetArgs {
     /// # Errors
     ///
     /// Fails in the same cases as [`BudgetArgs::admit`].
-    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
+    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = RunWork>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
         self.admit_estimate(whole, "simulate fewer fields")
     }

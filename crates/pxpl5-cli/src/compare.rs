@@ -7,7 +7,7 @@ mod table;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::scenes;
@@ -150,7 +150,7 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     for (row, plan) in query.plans()?.into_iter().enumerate() {
         // All rows have the same scene, so its warnings are printed once.
         let scene = scenes::load(&plan, quiet || row > 0)?;
-        let work = Work::of(&plan, &scene, true);
+        let work = RunWork::of(&plan, &scene, true);
         runs.extend(std::iter::repeat_n(work, seeds));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))

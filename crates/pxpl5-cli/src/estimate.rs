@@ -18,8 +18,8 @@
 //!
 //! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
-use pxpl5::arp::Plan as WalkPlan;
-pub(crate) use pxpl5::lab::estimate::{Estimate, Study, Work};
+use pxpl5::arp::WalkPlan;
+pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 

@@ -26,7 +26,6 @@ mod estimate;
 mod figures;
 mod film;
 mod i860;
-mod leaves;
 mod levels;
 mod limit;
 mod machines;

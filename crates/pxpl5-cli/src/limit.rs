@@ -2,7 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
@@ -136,7 +136,7 @@ impl LimitArgs {
         };
         // Closed forms cost almost nothing, so only levels with events are checked against the budget.
         if query.level != Level::Analytic {
-            let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
+            let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
             self.budget.admit_all([size; SIZES], 1)?;
         }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
@@ -180,7 +180,7 @@ impl LimitArgs {
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
         warn(&first.warnings(), self.quiet);
-        let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
+        let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
         self.budget.admit_all([size; VALUES as usize], 1)?;
         let goal = self.goal()?.unwrap_or(first.limit.goal);
         Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))

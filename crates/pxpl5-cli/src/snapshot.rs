@@ -2,7 +2,7 @@
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::whole;
 use crate::options::registry;
 use crate::output::OutputFile;
@@ -123,7 +123,7 @@ impl SnapshotArgs {
         // The text is written after the run, so that an interrupted run leaves no file.
         let mut saved = None;
         let scene = scenes::load(plan, how.quiet)?;
-        how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
+        how.budget.admit(&RunWork::of(plan, &scene, how.keep == Keep::Everything))?;
         warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);

@@ -1,6 +1,6 @@
 //! Warning before a run whose scene is too heavy: no picture will be shown in time.
 
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::count_of;
 use pxpl5::Plan;
 use pxpl5::scene::Scene;
@@ -14,7 +14,7 @@ const SHORT_RUN: u64 = 60;
 /// pipeline's closed-form formula gives the prediction. Without such a formula, a run is too short if the processors
 /// cannot transform all primitives once.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
-    let work = Work::of(plan, scene, false);
+    let work = RunWork::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     // A closed form predicts the first picture; it does not cover tracked heads.
     let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {

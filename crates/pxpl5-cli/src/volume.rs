@@ -7,7 +7,6 @@ mod look;
 mod run;
 mod settings;
 mod slices;
-mod space;
 mod sweep;
 
 use crate::error::CliError;

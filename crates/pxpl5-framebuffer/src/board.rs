@@ -41,7 +41,7 @@ impl FrameBuffer {
         config.check()?;
         Ok(Self {
             node,
-            video: Video::new(config.video)?,
+            video: config.video.video()?,
             word: Span::from_ns(config.port.word_ns),
             fields_kept: config.fields_kept as usize,
             buffers: [Buffer::new(), Buffer::new()],

@@ -3,8 +3,8 @@
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
-use crate::video::Video;
 use pxpl5_sim::Span;
+use pxpl5_wire::Video;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -227,7 +227,7 @@ mod tests {
     /// of visible regions plus twice the number of regions that the last search kept.
     #[test]
     fn discarded_regions_are_exactly_those_that_later_regions_cover() {
-        let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");
+        let video = crate::FrameBufferConfig::NTSC.video.video().expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];
         let mut random = 0x9E37_79B9_7F4A_7C15_u64;

@@ -74,7 +74,6 @@ mod scans;
 mod seen;
 mod stats;
 mod timing;
-mod video;
 
 pub use board::FrameBuffer;
 pub use config::FrameBufferConfig;
@@ -83,10 +82,10 @@ pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNumbers};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
+pub use pxpl5_wire::Video;
 pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
-pub use video::Video;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

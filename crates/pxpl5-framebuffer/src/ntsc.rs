@@ -241,7 +241,7 @@ impl DisplayConfig for FrameBufferConfig {
     }
 
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
-        let video = Video::new(self.video).map_err(refused)?;
+        let video = self.video.video().map_err(refused)?;
         let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node)).collect::<Result<Vec<_>, _>>();
         let surfaces = Surface::of_frame_buffers(nodes.len(), video.width(), video.height());
         let context = Context::default();

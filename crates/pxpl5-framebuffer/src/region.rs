@@ -1,9 +1,9 @@
 //! A region in a buffer, during and after its arrival.
 
 use crate::FrameBufferFault;
-use crate::video::{Video, frame_line, rectangle};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, MAX_MESSAGE_WORDS, PixelSource, REGION_SIZE, RegionPixels};
+use pxpl5_wire::{Video, frame_line};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -54,7 +54,7 @@ impl RegionWrite {
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
-        let Some(rectangle) = rectangle(video, &target) else { return Err(outside) };
+        let Some(rectangle) = video.rectangle(&target) else { return Err(outside) };
         let [_, _, width, height] = rectangle;
         // The number of messages follows from the size of the region.
         let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);

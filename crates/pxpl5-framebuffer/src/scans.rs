@@ -2,8 +2,8 @@
 //! overwritten.
 
 use crate::region::RegionWrite;
-use crate::video::Video;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::Video;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 

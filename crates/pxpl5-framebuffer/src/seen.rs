@@ -3,9 +3,9 @@
 use crate::buffer::Regions;
 use crate::picture::Canvas;
 use crate::region::{RegionWrite, Segment};
-use crate::video::Video;
 use image::RgbImage;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::Video;
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 

@@ -1,8 +1,8 @@
 //! All timing parameters of the frame buffer.
 
 use crate::error::FrameBufferConfigError;
-use pxpl5_sim::Clock;
 use pxpl5_sim::parameters::{MAX, ParameterTable, check};
+use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Timing of NTSC video. All times follow from one pixel clock. A line has exactly 780 pixel periods (4004/63 us),
@@ -59,16 +59,23 @@ impl VideoTiming {
         Ok(())
     }
 
-    pub(crate) fn pixel_clock(&self) -> Option<Clock> {
-        Clock::new(self.pixel_ps, self.pixel_divisor)
-    }
-
-    pub(crate) fn line_clock(&self) -> Option<Clock> {
-        Clock::new(self.pixel_ps * self.line_pixels, self.pixel_divisor)
-    }
-
-    pub(crate) fn field_clock(&self) -> Option<Clock> {
-        let pixels = self.frame_lines * self.line_pixels;
-        Clock::new(self.pixel_ps.checked_mul(pixels)?, 2 * self.pixel_divisor)
+    /// Returns the video signal that this table describes.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
+    pub fn video(&self) -> Result<Video, FrameBufferConfigError> {
+        self.check()?;
+        let numbers = VideoNumbers {
+            pixel_ps: self.pixel_ps,
+            pixel_divisor: self.pixel_divisor,
+            line_pixels: self.line_pixels,
+            frame_lines: self.frame_lines,
+            visible_pixels: self.visible_pixels,
+            visible_lines: self.visible_lines,
+            left_blanking: self.left_blanking,
+            top_blanking: self.top_blanking,
+        };
+        Video::new(numbers).ok_or(FrameBufferConfigError::Clock)
     }
 }

@@ -11,7 +11,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 use support::field_target;
 
 fn ntsc() -> Video {
-    Video::new(VideoTiming::PAPERS).expect("valid")
+    VideoTiming::PAPERS.video().expect("valid")
 }
 
 /// Returns floor(n x 1001/60000 s) in picoseconds.
@@ -118,7 +118,7 @@ fn numbers_that_cannot_be_scanned_are_refused_by_name() {
         let mut timing = VideoTiming::PAPERS;
         let value = Value::Whole(value);
         timing.set(name, value).expect("known");
-        let error = Video::new(timing).expect_err(name);
+        let error = timing.video().expect_err(name);
         let FrameBufferConfigError::Number(ParameterError::OutOfLimits { found, .. }) = &error else {
             panic!("{name}: {error}")
         };
@@ -147,7 +147,7 @@ proptest! {
         for (info, value) in VideoTiming::INFOS.iter().zip(values) {
             timing.set(info.name, Value::Whole(value)).expect("listed");
         }
-        if let Ok(video) = Video::new(timing) {
+        if let Ok(video) = timing.video() {
             let _ = video.when(x, y, field);
         }
     }

@@ -33,7 +33,7 @@ const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of the latency in one figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct FlyThroughLatency {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
     /// Mean over all samples, in the figure's unit.
@@ -50,7 +50,7 @@ pub struct ApplicationTime {
     /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
     /// Latencies of figures 7, 7b and 7c.
-    pub figures: Vec<Spread>,
+    pub figures: Vec<FlyThroughLatency>,
 }
 
 /// Simulates the fly-throughs for all application times at the analytic level. The interpretation of the papers and the
@@ -74,7 +74,7 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
     let spread = |id: &'static str| {
         let measured = bench.measure(id)?;
         let sd = measured.details.iter().find(|detail| detail.name == "standard deviation");
-        Ok(Spread { id, mean: measured.value, sd: sd.map_or(f64::NAN, |detail| detail.value) })
+        Ok(FlyThroughLatency { id, mean: measured.value, sd: sd.map_or(f64::NAN, |detail| detail.value) })
     };
     let figures = FLY_THROUGHS.into_iter().map(spread).collect::<Result<_, ExperimentError>>()?;
     Ok(ApplicationTime { mean_ms, jitter_ms, figures })
@@ -82,10 +82,10 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
 
 /// Returns the printed mean and standard deviation of the latency of each fly-through.
 #[must_use]
-pub fn published() -> Vec<Spread> {
+pub fn published() -> Vec<FlyThroughLatency> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));
     of_fly_throughs
-        .map(|figure| Spread { id: figure.id, mean: figure.value, sd: figure.spread.unwrap_or(f64::NAN) })
+        .map(|figure| FlyThroughLatency { id: figure.id, mean: figure.value, sd: figure.spread.unwrap_or(f64::NAN) })
         .collect()
 }
 

@@ -34,7 +34,7 @@ use pxpl5_scene::Scene;
 
 /// Quantities of an experiment that determine its memory and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Work {
+pub struct RunWork {
     /// Number of display periods.
     pub fields: u64,
     /// Number of graphics processors.
@@ -144,7 +144,7 @@ impl Estimate {
     }
 }
 
-impl Work {
+impl RunWork {
     /// Returns the quantities that determine the cost of a checked experiment with its scene. Each field has one
     /// picture, or less if the processors need longer than a field to transform all primitives.
     #[must_use]
@@ -310,7 +310,7 @@ impl Study {
 mod tests {
     use super::*;
 
-    const SMALL: Work = Work {
+    const SMALL: RunWork = RunWork {
         fields: 1_200,
         gps: 11,
         primitives: 417,
@@ -326,19 +326,19 @@ mod tests {
     };
 
     /// Measured runs under `/usr/bin/time`: the work and the peak memory in MB.
-    const MEASURED: [(Work, f64); 12] = [
+    const MEASURED: [(RunWork, f64); 12] = [
         (SMALL, 13.8),
-        (Work { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
-        (Work { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
-        (Work { fields: 1_200, gps: 1_000, ..SMALL }, 50.6),
-        (Work { fields: 120, block: 16, ..SMALL }, 25.3),
-        (Work { fields: 120, block: 16, batch: 65_535, ..SMALL }, 421.0),
-        (Work { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
-        (Work { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
-        (Work { is_cycle_level: true, ..SMALL }, 18.6),
-        (Work { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
-        (Work { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
-        (Work { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
+        (RunWork { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
+        (RunWork { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
+        (RunWork { fields: 1_200, gps: 1_000, ..SMALL }, 50.6),
+        (RunWork { fields: 120, block: 16, ..SMALL }, 25.3),
+        (RunWork { fields: 120, block: 16, batch: 65_535, ..SMALL }, 421.0),
+        (RunWork { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
+        (RunWork { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
+        (RunWork { is_cycle_level: true, ..SMALL }, 18.6),
+        (RunWork { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
+        (RunWork { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
+        (RunWork { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
     ];
 
     #[test]
@@ -361,10 +361,10 @@ mod tests {
     #[test]
     fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
         for (work, seconds) in [
-            (Work { fields: 12_000, ..SMALL }, 47.5),
-            (Work { fields: 120, block: 16, ..SMALL }, 7.5),
-            (Work { fields: 1_200, gps: 1_000, ..SMALL }, 41.2),
-            (Work { is_cycle_level: true, ..SMALL }, 74.8),
+            (RunWork { fields: 12_000, ..SMALL }, 47.5),
+            (RunWork { fields: 120, block: 16, ..SMALL }, 7.5),
+            (RunWork { fields: 1_200, gps: 1_000, ..SMALL }, 41.2),
+            (RunWork { is_cycle_level: true, ..SMALL }, 74.8),
         ] {
             let ratio = work.estimate().seconds / seconds;
             assert!((0.1..2.0).contains(&ratio), "{work:?}: {ratio} times {seconds} s");
@@ -373,15 +373,15 @@ mod tests {
 
     #[test]
     fn more_of_anything_takes_more() {
-        let least = Work { block: 16, batch: 4, ..SMALL }.estimate();
+        let least = RunWork { block: 16, batch: 4, ..SMALL }.estimate();
         for more in [
-            Work { fields: 1_201, block: 16, batch: 4, ..SMALL },
-            Work { gps: 12, block: 16, batch: 4, ..SMALL },
-            Work { block: 8, batch: 4, ..SMALL },
+            RunWork { fields: 1_201, block: 16, batch: 4, ..SMALL },
+            RunWork { gps: 12, block: 16, batch: 4, ..SMALL },
+            RunWork { block: 8, batch: 4, ..SMALL },
         ] {
             assert!(more.estimate().bytes >= least.bytes && more.estimate().seconds > least.seconds, "{more:?}");
         }
-        assert!(Work { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
+        assert!(RunWork { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
     }
 
     /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two studies.

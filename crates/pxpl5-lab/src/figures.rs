@@ -32,10 +32,11 @@ pub use family::FigureFamily;
 pub use group::FigureGroup;
 pub use heads::PHOTODIODE_LINE;
 pub use measure::Bench;
-pub use measured::{Detail, FigureValue};
-pub use reading::{FieldCount, ROOM, Reading, Samples};
-pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
-pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
+pub use measured::FigureValue;
+pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
+pub use reading::{FieldCount, LatencySamples, ROOM, Reading};
+pub use row::{MISS_PERCENT, mean_error_percent};
+pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
 pub use topics::figure_groups;
 
 use crate::application_time::{ApplicationTime, application_times};
@@ -153,7 +154,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
 /// Measures one figure under common settings (`bench`) and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
-        Ok(measured) => Ok(FigureRow::new(figure, measured)),
+        Ok(measured) => Ok(figure.row(measured)),
         Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
     }
 }

@@ -15,9 +15,10 @@
 //! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
 //! position and the interpretations vary too.
 
-use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
+use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::mix;
 use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
@@ -324,7 +325,7 @@ mod tests {
             likely: [20.2, 21.0],
             effects: Vec::new(),
         };
-        let mut rows = [FigureRow::new(figure, FigureValue::from(simulated))];
+        let mut rows = [figure.row(FigureValue::from(simulated))];
         fill(&mut rows, &[interval]);
         let [row] = rows;
         row
@@ -350,7 +351,7 @@ mod tests {
     #[test]
     fn the_figure_of_the_scenes_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
-        let mut rows = [FigureRow::new(figure, FigureValue::from(9.0))];
+        let mut rows = [figure.row(FigureValue::from(9.0))];
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
         assert!(!rows[0].is_out_of_reach());
@@ -365,10 +366,8 @@ mod tests {
         let [low, high] = line.ends;
         assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
         assert!(low < interval.nominal && interval.nominal < high);
-        let mut rows = [FigureRow::new(
-            FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed"),
-            FigureValue::from(interval.nominal),
-        )];
+        let figure = FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed");
+        let mut rows = [figure.row(FigureValue::from(interval.nominal))];
         fill(&mut rows, std::slice::from_ref(&interval));
         assert_eq!((rows[0].interval, rows[0].analytic), (Some(interval.bounds()), None));
     }

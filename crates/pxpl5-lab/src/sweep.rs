@@ -48,15 +48,15 @@ pub(crate) use store::{line_of, lock, opened};
 pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
-pub use point::{Status, SweepRow};
+pub use point::{PointResults, Status, SweepRow, Swept};
 pub use run::{RunOptions, run, run_stoppable};
+pub use scenes::SceneCache;
 pub use shard::Shard;
-pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
+pub use space::{Axis, AxisValues, MAX_POINTS, SweepSpace, leaves};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::Measure;
-use scenes::Scenes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
     /// Scenes loaded so far, shared by all clones of the sweep.
-    scenes: Arc<Scenes>,
+    scenes: Arc<SceneCache>,
 }
 
 impl Sweep {
@@ -85,7 +85,10 @@ impl Sweep {
     ///
     /// Returns [`FileError`] if the table is missing or invalid.
     pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
-        let space = SweepSpace::read(&base)?;
+        let of_file = base.sweep.as_ref();
+        let place = of_file.map_or("", |sweep| &sweep.place);
+        let key_of = |path: &str, place: &str| base.canonical_key(path, place);
+        let space = SweepSpace::read(of_file.map(|sweep| &sweep.value), (place, &base.sweep_places), key_of)?;
         Ok(Self { base, space, scenes: Arc::default() })
     }
 

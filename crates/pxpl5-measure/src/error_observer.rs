@@ -12,7 +12,7 @@ use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_run::{Cause, Estimator, Every, FinalResults, HeadViews, Reprojection, Warp};
 use pxpl5_sim::Time;
-use pxpl5_wire::display::{Display, Light, Scan};
+use pxpl5_wire::display::{Display, PixelLight, ScanOrder};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -113,10 +113,11 @@ impl Showing {
         let periods_per_s = PERIODS as f64 / seconds;
         let [columns, lines] = [surface.width, surface.height / Rows::lit(display, PeriodNumber::FIRST).distance];
         // Strips follow each other in the direction of the scan.
-        let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
+        let along =
+            if matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left) { columns } else { surface.height };
         // A global scan lights all pixels at once, so the device can use only one pose per period.
         let poses = match (setting.every, display.light().scan) {
-            (_, Scan::Global) | (Every::Field, _) => 1,
+            (_, ScanOrder::Global) | (Every::Field, _) => 1,
             (Every::Strip, _) => along.div_ceil(Every::STRIP),
             (Every::Line, _) if along == columns => columns,
             (Every::Line, _) => lines,
@@ -305,14 +306,14 @@ impl Evaluation {
     }
 
     /// Adds the distance that the content of a pixel moves across the screen while the pixel is lit.
-    fn smear(&self, seen: &Seen, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+    fn smear(&self, seen: &Seen, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
             self.smear_of(&self.evaluator.content(drawn, middle(pixel.place[0], pixel.place[1])), pixel, light, eye);
         }
     }
 
-    fn smear_of(&self, content: &crate::content::Content, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+    fn smear_of(&self, content: &crate::content::Content, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         if light.is_instant() {
             return;
         }

@@ -8,7 +8,7 @@ use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Shown};
 use image::RgbImage;
 use pxpl5_run::{Every, FinalResults, HeadViews, Reprojection, Warp};
-use pxpl5_wire::display::{Display, Scan};
+use pxpl5_wire::display::{Display, ScanOrder};
 use pxpl5_wire::{PeriodNumber, REGION_SIZE};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -70,7 +70,7 @@ impl<'a> PictureMover<'a> {
     /// Returns ranges of pixels in a row, so that all pixels of a range move to one pose. A range covers a region, or a
     /// single pixel if each column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
-        let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
+        let sideways = matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };
         (0..width).step_by(length as usize).map(move |x| x..(x + length).min(width))
     }
@@ -85,7 +85,7 @@ impl<'a> PictureMover<'a> {
         out: &mut RgbImage,
     ) -> bool {
         let display = self.run.record.display();
-        if matches!(display.light().scan, Scan::Right | Scan::Left) && self.setting.every != Every::Field {
+        if matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left) && self.setting.every != Every::Field {
             return false;
         }
         let Some(drawn_for) = self.only_moment(screen, field) else { return false };

@@ -4,7 +4,7 @@ use crate::rows::Rows;
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
-use pxpl5_wire::display::{Display, Scan};
+use pxpl5_wire::display::{Display, ScanOrder};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
@@ -71,9 +71,9 @@ impl Reprojector {
 /// Returns the index of the part of a scan (field, strip or line) that contains a pixel.
 fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     let along = match display.light().scan {
-        Scan::Down | Scan::Up => y,
-        Scan::Right | Scan::Left => x,
-        Scan::Global => return 0,
+        ScanOrder::Down | ScanOrder::Up => y,
+        ScanOrder::Right | ScanOrder::Left => x,
+        ScanOrder::Global => return 0,
     };
     match every {
         Every::Field => 0,
@@ -89,11 +89,11 @@ fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> O
     let scan = display.light().scan;
     // First and last line of the part, counted in the direction of the scan.
     let [from, to] = match every {
-        Every::Strip if scan != Scan::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
-        Every::Line if scan != Scan::Global => [part; 2],
+        Every::Strip if scan != ScanOrder::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
+        Every::Line if scan != ScanOrder::Global => [part; 2],
         _ => [0, u32::MAX],
     };
-    let sideways = matches!(scan, Scan::Right | Scan::Left);
+    let sideways = matches!(scan, ScanOrder::Right | ScanOrder::Left);
     let whole = [0, u32::MAX];
     let [xs, ys] = if sideways { [[from, to], whole] } else { [whole, [from, to]] };
     let rows = Rows::lit(display, field);

@@ -1,6 +1,6 @@
 //! Latency from a step (translation) of the head until the content of each display memory is lit.
 
-use address_recalculation::{AddressRecalculationPipeline, Scan};
+use address_recalculation::{AddressRecalculationPipeline, FaceScan};
 use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
@@ -67,7 +67,7 @@ impl StepSum {
 
 impl OfMemory {
     /// Adds the latency of a display memory's content to the results, measured when the middle of a field is lit.
-    fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
+    fn push(&mut self, run: &FinalResults<'_>, scan: &FaceScan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
         // The measurement is looked up once for each update, because a long run may discard the view of an update that
         // is shown for many fields.

@@ -4,6 +4,7 @@ use crate::attended::attended;
 use crate::catalogue::python;
 use crate::errors::{failed_run, wrong_setting};
 use crate::settings::Settings;
+use pxpl5::Statistics;
 use pxpl5::compare::CompareQuery;
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
 use pxpl5::lab::diff::Changed;
@@ -11,7 +12,7 @@ use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
 use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery, Values};
 use pxpl5::readings::run as rank;
 use pxpl5::rig::{PASSES, Rig};
-use pxpl5::tracking::rig::{Latency, Side};
+use pxpl5::tracking::rig::Side;
 use pxpl5::{Goal, Level, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -49,13 +50,13 @@ pub(crate) fn figure<'py>(
     let measured =
         attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
-    python(py, &row(&FigureRow::new(figure, measured)))
+    python(py, &row(&figure.row(measured)))
 }
 
 fn row(row: &FigureRow) -> serde_json::Value {
     let mut value = serde_json::to_value(row).unwrap_or_default();
     if let Some(object) = value.as_object_mut() {
-        object.insert("misses".to_owned(), row.misses().into());
+        object.insert("misses".to_owned(), (!row.is_met).into());
         let [low, high] = row.interval.map_or([None, None], |[low, high]| [Some(low), Some(high)]);
         object.insert("low".to_owned(), low.into());
         object.insert("high".to_owned(), high.into());
@@ -272,13 +273,13 @@ pub(crate) fn rig<'py>(
         rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
     })?;
     let measured = measured.map_err(wrong_setting)?;
-    let latency = |latency: &Latency| {
+    let latency = |latency: &Statistics| {
         json!({
             "n": latency.n,
-            "mean_ms": latency.mean_s * 1e3,
-            "sd_ms": latency.deviation_s * 1e3,
-            "min_ms": latency.least_s * 1e3,
-            "max_ms": latency.greatest_s * 1e3,
+            "mean_ms": latency.mean * 1e3,
+            "sd_ms": latency.sd * 1e3,
+            "min_ms": latency.min * 1e3,
+            "max_ms": latency.max * 1e3,
         })
     };
     let side = |side: &Side| {

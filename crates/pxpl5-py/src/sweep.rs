@@ -125,7 +125,7 @@ impl Store {
             let of = sweep.space().points();
             let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };
-            let result = run_stoppable(&sweep, &mut store, options, &watch.stop_flag(), |_| {
+            let result = run_stoppable(&*sweep, &mut store, options, &watch.stop_flag(), |_| {
                 done += 1;
                 watch.report(done, of);
             });

@@ -26,7 +26,7 @@ mod rows;
 mod style;
 
 pub use crate::ports::ShownPicture;
-pub use model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
+pub use model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 pub use options::{MAX_FIELDS, TimelineOptions};
 
 use crate::results::{count_of, origin_lines};

@@ -83,7 +83,7 @@ pub struct VolumeComparison {
 
 /// The position of the eye in the pictures of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewpoint {
+pub struct ComparePoint {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
     /// Elevation of the eye above the horizon, degrees.
@@ -130,7 +130,7 @@ pub fn variant_count() -> u64 {
 pub fn compare(
     settings: &VolumeSettings,
     scene: &Scene,
-    viewpoint: Option<Viewpoint>,
+    viewpoint: Option<ComparePoint>,
     workers: &dyn Workers,
     finished: impl Fn(u64, u64),
 ) -> Result<VolumeComparison, VolumeError> {
@@ -170,7 +170,7 @@ pub fn compare(
     Ok(comparison)
 }
 
-impl Viewpoint {
+impl ComparePoint {
     fn look(&self, volume: &Volume) -> Look {
         Look::around(&volume.settings, self.azimuth_deg, self.elevation_deg, self.side)
     }

@@ -5,7 +5,7 @@ use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
 use image::imageops::{self, FilterType};
 use image::{GenericImage, Rgb, RgbImage};
-use spatialgl::perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+use spatialgl::perspecta::{Camera, PictureLight, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
 /// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
@@ -56,7 +56,7 @@ impl Look {
     /// # Errors
     ///
     /// Returns [`VolumeError::Display`] if the camera is invalid.
-    pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
+    pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<PictureLight, VolumeError> {
         let undithered = match self.is_undithered {
             true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,
             false => None,

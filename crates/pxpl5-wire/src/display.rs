@@ -31,7 +31,7 @@ mod surface;
 pub use aim::{Aim, LightTimes};
 pub use config::{DisplayConfig, DisplayError};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
-pub use light::{Light, Scan};
+pub use light::{PixelLight, ScanOrder};
 pub use surface::{Counter, Surface};
 
 use crate::{Body, CopyTarget, NodeId, PeriodNumber};
@@ -171,8 +171,8 @@ pub trait Display: Any + Debug + Send + Sync {
 
     /// Returns the order in which pixels are lit, and the time for which each pixel shines from [`Display::lights`] on.
     /// The default is a scan from the top, line by line, in which each pixel shines only for an instant.
-    fn light(&self) -> Light {
-        Light::default()
+    fn light(&self) -> PixelLight {
+        PixelLight::default()
     }
 
     /// Returns the display's counters. Each counter covers the time since the start of the run.

@@ -24,6 +24,7 @@ mod expression;
 pub mod format;
 mod number;
 mod region;
+mod video;
 
 pub use body::{
     Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CommandSink,
@@ -33,6 +34,7 @@ pub use body::{
 pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};
 pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
+pub use video::{Video, VideoNumbers, frame_line};
 
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// A vertex, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex {
+pub struct ColouredVertex {
     /// Position in the object's coordinates. The unit is the pixel if the model-view matrix is the identity.
     pub position: DVec3,
     /// Normal of the surface, of any length. The normal matters only with lighting.
@@ -17,7 +17,7 @@ pub struct Vertex {
     pub colour: [u8; 3],
 }
 
-impl Vertex {
+impl ColouredVertex {
     /// Creates a vertex without a normal.
     #[must_use]
     pub const fn new(position: DVec3, colour: [u8; 3]) -> Self {
@@ -28,7 +28,7 @@ impl Vertex {
 /// A buffer of checked vertices: every position and normal is finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexBuffer {
-    vertices: Vec<Vertex>,
+    vertices: Vec<ColouredVertex>,
 }
 
 impl VertexBuffer {
@@ -37,7 +37,7 @@ impl VertexBuffer {
     /// # Errors
     ///
     /// [`SpatialError::NotFinite`] names the first vertex with a coordinate that is infinite or NaN.
-    pub fn new(vertices: Vec<Vertex>) -> Result<Self, SpatialError> {
+    pub fn new(vertices: Vec<ColouredVertex>) -> Result<Self, SpatialError> {
         for (index, vertex) in vertices.iter().enumerate() {
             for (what, value) in [("position", vertex.position), ("normal", vertex.normal)] {
                 if !value.is_finite() {
@@ -79,7 +79,7 @@ pub enum Topology {
 
 /// A directional light that shines on both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
+pub struct TwoSidedLight {
     /// Direction towards the light source in world coordinates, of any length except zero.
     pub direction: DVec3,
     /// Fraction of a surface's colour that is visible without light.
@@ -88,10 +88,10 @@ pub struct Light {
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording of draw calls. [`Context::present`] returns the recording and starts a
-/// new one. The drawing state does not change.
+/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
+/// a new one. The drawing state does not change.
 #[derive(Clone, Debug)]
-pub struct Context {
+pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
     pub model_view: DMat4,
     /// Side of the square that represents a point, in pixels of the slice.
@@ -99,13 +99,13 @@ pub struct Context {
     /// Width of lines, in pixels of the image.
     pub line_width: f64,
     /// Light source of the scene. With `None`, colours stay unchanged.
-    pub light: Option<Light>,
+    pub light: Option<TwoSidedLight>,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
     recording: CommandBuffer,
 }
 
-impl Default for Context {
+impl Default for DrawContext {
     fn default() -> Self {
         Self {
             model_view: DMat4::IDENTITY,
@@ -118,7 +118,7 @@ impl Default for Context {
     }
 }
 
-impl Context {
+impl DrawContext {
     /// Discards the recorded draw calls, and fills every slice with a colour.
     pub fn clear(&mut self, colour: [u8; 3]) {
         self.recording = CommandBuffer { background: colour, ..CommandBuffer::default() };
@@ -178,7 +178,7 @@ impl Context {
         require(size.is_finite() && size > 0.0, what, "a finite size above 0 px", size)
     }
 
-    fn push_vertices(&mut self, vertices: &[Vertex]) -> u32 {
+    fn push_vertices(&mut self, vertices: &[ColouredVertex]) -> u32 {
         let first = self.recording.positions.len() as u32;
         for vertex in vertices {
             let world = self.model_view.transform_point3(vertex.position);
@@ -188,7 +188,7 @@ impl Context {
         first
     }
 
-    fn lit(&self, vertex: &Vertex) -> [f64; 3] {
+    fn lit(&self, vertex: &ColouredVertex) -> [f64; 3] {
         let colour = vertex.colour.map(f64::from);
         let Some(light) = &self.light else { return colour };
         let normal = self.model_view.transform_vector3(vertex.normal).normalize_or_zero();

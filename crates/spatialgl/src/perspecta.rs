@@ -44,4 +44,4 @@ mod viewer;
 pub use error::PerspectaError;
 pub use protocol::{BatchMessages, TileMessage, batch_messages, volume_messages};
 pub use timing::PerspectaConfig;
-pub use viewer::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+pub use viewer::{Camera, PictureLight, ViewOptions, film, view_planes, view_undithered};

@@ -15,7 +15,7 @@ mod measurement;
 mod oscilloscope;
 
 pub use detection::Detection;
-pub use measurement::{InsidePass, Latency, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
+pub use measurement::{InsidePass, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
 pub use oscilloscope::{ScopeEdge, ScopeTrace};
 
 use thiserror::Error;

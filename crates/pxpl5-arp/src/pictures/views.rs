@@ -4,17 +4,17 @@ use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
 use crate::error::WalkError;
-use crate::look::{Faces, picture, rgb};
+use crate::look::{WalkFaces, picture, rgb};
 use crate::simulation::Simulation;
-use address_recalculation::{ArpConfig, Lens, Picture};
+use address_recalculation::{ArpConfig, Lens, LensPicture};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 
 /// A view of the cube faces of all memories.
 #[derive(Clone, Debug)]
-pub struct Views<'a> {
+pub struct MemoryViews<'a> {
     /// Faces of all memories.
-    pub faces: &'a Faces,
+    pub faces: &'a WalkFaces,
     /// Orientation of the head.
     pub orientation: DQuat,
     /// Lens through which the eye looks.
@@ -27,7 +27,7 @@ pub(crate) fn without_lens(display: &ArpConfig) -> Lens {
     if Lens::Flat.check(&display.picture()).is_ok() { Lens::Flat } else { display.lens.clone() }
 }
 
-impl Views<'_> {
+impl MemoryViews<'_> {
     /// Returns the picture that the eye sees.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Views::seen`].
+    /// Fails in the same cases as [`MemoryViews::seen`].
     pub fn memories(&self) -> Result<RgbImage, WalkError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
@@ -61,7 +61,7 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Views::seen`].
+    /// Fails in the same cases as [`MemoryViews::seen`].
     pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, WalkError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
@@ -93,7 +93,7 @@ impl Views<'_> {
 }
 
 /// Returns the number of pixels per radian in the middle of a picture.
-fn pixels_per_radian(lens: &Lens, screen: &Picture) -> f64 {
+fn pixels_per_radian(lens: &Lens, screen: &LensPicture) -> f64 {
     let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
     let middle = screen.width / 2;
     1.0 / angle(view(middle.saturating_sub(1)), view(middle)).max(f64::MIN_POSITIVE)

@@ -4,8 +4,8 @@ use super::PanelNumbers;
 use image::RgbImage;
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::display::{
-    BufferReceipt, Counter, Display, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Light,
-    Scan, Surface,
+    BufferReceipt, Counter, Display, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
+    PixelLight, ScanOrder, Surface,
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
@@ -76,11 +76,11 @@ impl Panel {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
         match self.light().scan {
-            Scan::Down => line * columns + x,
-            Scan::Up => (lines - 1 - line) * columns + x,
-            Scan::Right => x * lines + line,
-            Scan::Left => (columns - 1 - x) * lines + line,
-            Scan::Global => lines * columns,
+            ScanOrder::Down => line * columns + x,
+            ScanOrder::Up => (lines - 1 - line) * columns + x,
+            ScanOrder::Right => x * lines + line,
+            ScanOrder::Left => (columns - 1 - x) * lines + line,
+            ScanOrder::Global => lines * columns,
         }
     }
 
@@ -197,7 +197,7 @@ impl Display for Panel {
         (first as u32, distance as u32)
     }
 
-    fn light(&self) -> Light {
+    fn light(&self) -> PixelLight {
         self.numbers.light()
     }
 

@@ -3,7 +3,7 @@
 use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{ParameterTable, Value};
 use pxpl5_wire::REGION_SIZE;
-use pxpl5_wire::display::{DisplayError, Light, Scan};
+use pxpl5_wire::display::{DisplayError, PixelLight, ScanOrder};
 
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;
@@ -72,16 +72,16 @@ impl PanelNumbers {
 
     /// Returns the order in which pixels are lit, and how long each pixel shines.
     #[must_use]
-    pub const fn light(&self) -> Light {
+    pub const fn light(&self) -> PixelLight {
         let scan = match (self.scan, self.direction) {
-            (1, _) => Scan::Global,
-            (_, 1) => Scan::Up,
-            (_, 2) => Scan::Right,
-            (_, 3) => Scan::Left,
-            _ => Scan::Down,
+            (1, _) => ScanOrder::Global,
+            (_, 1) => ScanOrder::Up,
+            (_, 2) => ScanOrder::Right,
+            (_, 3) => ScanOrder::Left,
+            _ => ScanOrder::Down,
         };
         let [persistence, response] = [Span::from_us(self.persistence_us), Span::from_us(self.response_us)];
-        Light { scan, persistence, response }
+        PixelLight { scan, persistence, response }
     }
 
     /// Checks rules that relate several parameters. `table` is the prefix of parameter names in error messages.

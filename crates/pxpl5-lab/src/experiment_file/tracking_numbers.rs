@@ -6,7 +6,7 @@ use crate::compare::tracker_by;
 use pxpl5_machine::{ConfigError, Parameter};
 use pxpl5_sim::parameters::ParameterTable;
 use tracking::config::{FACTS, Tables};
-use tracking::tracker::{HostLine, TrackerConfig};
+use tracking::tracker::{SerialRead, TrackerConfig};
 
 /// Prefix of every parameter's path.
 const PREFIX: &str = "tracking.";
@@ -44,7 +44,7 @@ fn applies(table: &str, own: &str) -> bool {
 /// an effect.
 fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     match path {
-        "tracking.host.poll" if !matches!(tracker.host, HostLine::Polled { .. }) => {
+        "tracking.host.poll" if !matches!(tracker.host, SerialRead::Polled { .. }) => {
             Some("whose host is patched and does not poll; fastrak-polled, flock and 3space are polled")
         }
         "tracking.host.byte_bits" if tracker.serial.is_none() => {

@@ -6,6 +6,8 @@ use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
 use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
+use pxpl5_sim::figures::column::{DETAILS, ERROR, EXPERIMENT, INTERVAL, NUMBER, PUBLISHED, SIMULATED, STATEMENT};
+use pxpl5_sim::figures::{TableColumn, table};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -47,6 +49,10 @@ pub(super) const fn free(
     Figure { id, paper, section, statement, value, unit, spread, experiment, basis: Basis::Free, cause }
 }
 
+const MARK: TableColumn<FigureRow> = ("", |row| if row.is_met { "met" } else { "**miss**" }.to_owned());
+
+const COLUMNS: [TableColumn<FigureRow>; 7] = [NUMBER, STATEMENT, PUBLISHED, SIMULATED, ERROR, INTERVAL, MARK];
+
 impl FigureGroup {
     pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
         let rows = parallel::map(&topic.measurements, |measurement| measurement.row(bench));
@@ -57,55 +63,22 @@ impl FigureGroup {
     /// Returns the group's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| row.misses()).collect();
+        let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| !row.is_met).collect();
         let mut text = format!(
-            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n\
-             | # | figure | published | simulated | error | interval | |\n|---|---|---|---|---|---|---|\n",
+            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n{}",
             self.title,
             self.about,
             missed.len(),
             self.rows.len(),
+            table(&COLUMNS, &self.rows),
         );
-        self.rows.iter().for_each(|row| text.push_str(&line(row)));
         // Each miss is followed by its known cause.
         for row in missed {
             let _ = writeln!(text, "\n- Row **{}** is a miss. {}", row.id, row.cause);
         }
         // The experiments come last, for readers who want to repeat them.
-        let _ = writeln!(text, "\n| # | experiment | other results |\n|---|---|---|");
-        for row in &self.rows {
-            let also: Vec<_> =
-                row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
-            let _ = writeln!(text, "| {} | {} | {} |", row.id, row.experiment, also.join(", "));
-        }
-        text
+        text + "\n" + &table(&[NUMBER, EXPERIMENT, DETAILS], &self.rows)
     }
-}
-
-fn line(row: &FigureRow) -> String {
-    let interval = row
-        .interval
-        .map_or_else(|| "not varied".to_owned(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
-    let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", digits(spread)));
-    let mark = if row.misses() { "**miss**" } else { "met" };
-    format!(
-        "| {} | {} ({}) | {}{spread} {} | {} {} | {:+.1} % | {interval} | {mark} |\n",
-        row.id,
-        row.statement,
-        row.source,
-        digits(row.published),
-        row.unit,
-        digits(row.simulated),
-        row.unit,
-        row.error_percent
-    )
-}
-
-/// Formats a number with four significant digits and without trailing zeros.
-fn digits(value: f64) -> String {
-    let after = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
-    let text = format!("{value:.after$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 impl Measurement {
@@ -114,7 +87,7 @@ impl Measurement {
         let measured = (self.measure)(bench);
         let measured = measured.map_err(|error| FigureError { id: id.to_owned(), reason: error.to_string() })?;
         let interval = self.interval(bench, measured.value);
-        Ok(FigureRow { interval, ..FigureRow::new(&self.figure, measured) })
+        Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
     /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value for

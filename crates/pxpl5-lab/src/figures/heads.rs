@@ -9,7 +9,7 @@ use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingCo
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
-use tracking::rig::{Latency, PendulumRig};
+use tracking::rig::PendulumRig;
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
@@ -45,13 +45,13 @@ fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) ->
     rig.rig.photodiode_line = line;
     let measured = rig.measure(machine, Arc::new(pipeline));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
+    let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
-        detail("least", least_s * 1e3, "ms"),
-        detail("greatest", greatest_s * 1e3, "ms"),
-        detail("inside, to the swap", measured.inside.rendering.mean_s * 1e3, "ms"),
+        detail("least", min * 1e3, "ms"),
+        detail("greatest", max * 1e3, "ms"),
+        detail("inside, to the swap", measured.inside.rendering.mean * 1e3, "ms"),
     ];
-    Ok(FigureValue::with(mean_s * 1e3, details))
+    Ok(FigureValue::with(mean * 1e3, details))
 }
 
 /// Number of seeds of the head motion in figure 18.

@@ -3,7 +3,7 @@
 use super::applications::{Applications, key_of};
 use super::heads::{self, PHOTODIODE_LINE};
 use super::measured::{FigureValue, Result, detail, scene_named};
-use super::reading::{Reading, Samples};
+use super::reading::{LatencySamples, Reading};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use crate::parallel;
@@ -273,7 +273,7 @@ impl Bench {
     /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds in the settings is
     /// divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-        let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
+        let samples_a_frame = if self.reading.samples == LatencySamples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
         // One seed gives one fly-through.
         let latencies = parallel::map(&seeds, |seed| {

@@ -200,9 +200,9 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
     }
     let measured = rig.measure(&machine, Arc::new(bench.reading.pipeline()));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean_s * 1e3);
+    let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean * 1e3);
     let details = vec![detail("tracking", tracking, "ms"), detail("rendering", rendering, "ms")];
-    Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
+    Ok(FigureValue::with(measured.outside.total.mean * 1e3, details))
 }
 
 /// Number of iterations of the i860 loop.

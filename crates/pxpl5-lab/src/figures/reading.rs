@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Definition of the latency samples whose mean a paper prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Samples {
+pub enum LatencySamples {
     /// Each frame gives one sample, timed from the start of TRANSFORM of its first eye.
     FirstEye,
     /// Each eye of a frame gives one sample, timed from the start of TRANSFORM of this eye.
@@ -33,7 +33,7 @@ pub enum FieldCount {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
     /// Definition of the latency samples whose mean a paper prints.
-    pub samples: Samples,
+    pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,
     /// Number of finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
@@ -61,7 +61,7 @@ impl Reading {
     /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
     /// and no text of the papers contradicts it.
     pub const USUAL: Self = Self {
-        samples: Samples::EachEye,
+        samples: LatencySamples::EachEye,
         fields: FieldCount::Whole,
         kept: ROOM,
         finished: FinishedRegions::Wait,
@@ -89,13 +89,16 @@ impl Reading {
         all = varied(&all, &FinishedRegions::ALL, |reading, finished| Self { finished, ..reading });
         all = varied(&all, &KEPT, |reading, kept| Self { kept, ..reading });
         all = varied(&all, &[1, 2], |reading, bins| Self { bins, ..reading });
-        all = varied(&all, &[Samples::FirstEye, Samples::EachEye], |reading, samples| Self { samples, ..reading });
+        all = varied(&all, &[LatencySamples::FirstEye, LatencySamples::EachEye], |reading, samples| Self {
+            samples,
+            ..reading
+        });
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
     /// Returns the answers of this interpretation in words, in the order of the questions.
     fn answers(&self) -> [String; 7] {
-        let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
+        let samples = if self.samples == LatencySamples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
         let kept = if self.kept == ROOM { "room for all".to_owned() } else { format!("{} kept", self.kept) };
         let faces = if self.culled { "culled" } else { "all faces" };
@@ -140,8 +143,8 @@ impl Reading {
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
-            Samples::FirstEye => &summary.latencies_ms,
-            Samples::EachEye => &summary.eye_swap_latencies_ms,
+            LatencySamples::FirstEye => &summary.latencies_ms,
+            LatencySamples::EachEye => &summary.eye_swap_latencies_ms,
         }
     }
 

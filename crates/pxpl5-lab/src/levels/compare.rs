@@ -127,7 +127,7 @@ fn rows_of(
     let row = |figure: &Figure| {
         let measured = bench.measure(figure.id)?;
         step();
-        Ok(FigureRow::new(figure, measured))
+        Ok(figure.row(measured))
     };
     parallel::map(&FIGURES, row).into_iter().collect()
 }

@@ -5,7 +5,7 @@
 
 use super::Sweep;
 use crate::Plan;
-use crate::estimate::{Estimate, Work};
+use crate::estimate::{Estimate, RunWork};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
@@ -46,9 +46,9 @@ impl Sweep {
         if plan.level == Level::Analytic {
             return nothing;
         }
-        let mut work = Work::of(&plan, &scene, true);
+        let mut work = RunWork::of(&plan, &scene, true);
         if let Some(pictures_a_field) = pictures_from_closed_form(&plan, plan.experiment(scene)) {
-            work = Work { pictures_a_field, uses_closed_form: true, ..work };
+            work = RunWork { pictures_a_field, uses_closed_form: true, ..work };
         }
         Estimate { bytes: work.bytes(), seconds: POINT + work.core_seconds() }
     }

@@ -1,6 +1,6 @@
 //! The input files that points of a sweep read, such as models and recordings, with hashes of their contents.
 
-use super::{Sweep, Values};
+use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};
 use crate::head_names::is_recording;
 use pxpl5_run::Fingerprint;
@@ -19,11 +19,7 @@ impl Sweep {
         let mut inputs = inputs_of(&self.base);
         for (key, names_file) in KEYS {
             let folder = self.folder();
-            for (path, values) in self.space.axes().iter().flat_map(|axis| axis.paths.iter().zip(&axis.values)) {
-                if let (true, Values::Listed(list)) = (path == key, values) {
-                    list.iter().for_each(|value| put(&mut inputs, names_file, &folder, value));
-                }
-            }
+            self.space.listed(key).for_each(|value| put(&mut inputs, names_file, &folder, value));
         }
         inputs
     }

@@ -228,7 +228,7 @@ fn a_space_of_any_size_takes_no_memory_for_its_values() {
     let seeds = sweep("[sweep]\nseeds = 10000000\n");
     assert_eq!(seeds.space().points(), 10_000_000);
     assert_eq!(seeds.space().settings(9_999_999)["seed"].as_integer(), Some(10_000_000));
-    assert!(matches!(seeds.space().axes()[0].values[..], [Values::Range { from: 1, step: 1, count: 10_000_000 }]));
+    assert!(matches!(seeds.space().axes()[0].values[..], [AxisValues::Range { from: 1, step: 1, count: 10_000_000 }]));
     let header = serde_json::to_string(&seeds.header().expect("a valid point")).expect("JSON");
     assert!(header.contains("\"ranges\":[[1,1,10000000]]") && header.len() < 10_000, "{} bytes", header.len());
     let read: Header = serde_json::from_str(&header).expect("as it was written");

@@ -1,7 +1,7 @@
 //! Builds a timeline from the observations of a run.
 
 use super::arrows::arrows;
-use super::model::{Scan, Timeline, TimelineRow};
+use super::model::{Timeline, TimelineRow, TimelineScan};
 use super::options::{MAX_FIELDS, TimelineOptions};
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
@@ -101,10 +101,10 @@ fn samples(run: &SoFar<'_>, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
 }
 
-fn scan(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Option<Scan> {
+fn scan(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Option<TimelineScan> {
     let next = display.tick(period.next());
     let shown = pictures.iter().rev().find(|times| times.shown_at < next);
-    Some(Scan {
+    Some(TimelineScan {
         period,
         picture: shown.map(|times| times.picture),
         begin: display.first_light(0, period)?,

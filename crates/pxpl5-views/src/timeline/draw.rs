@@ -1,7 +1,7 @@
 //! Draws a timeline as SVG.
 
 use super::legend::legend;
-use super::model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
+use super::model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 use super::style::{class_of, definitions, letters, pattern, style};
 use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
@@ -239,7 +239,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// Draws the path of the display's beam in a period, and the number of the displayed picture.
-    fn scan(&mut self, scan: &Scan) {
+    fn scan(&mut self, scan: &TimelineScan) {
         let x = self.x(scan.begin);
         let end = self.x(scan.end);
         let y = Units::whole(self.beam);

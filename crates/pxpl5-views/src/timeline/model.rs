@@ -48,7 +48,7 @@ pub struct TimelineRow {
 
 /// The scan of the first display's first surface in one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scan {
+pub struct TimelineScan {
     /// Period of the scan. For NTSC, the period is a field.
     pub period: PeriodNumber,
     /// Picture that is displayed in this period, if any.
@@ -74,7 +74,7 @@ pub struct Timeline {
     /// Rows, from top to bottom.
     pub rows: Vec<TimelineRow>,
     /// Scans of the first display.
-    pub scans: Vec<Scan>,
+    pub scans: Vec<TimelineScan>,
     /// Surfaces of all displays, in order of their numbers.
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.

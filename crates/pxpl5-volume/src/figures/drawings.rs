@@ -12,12 +12,13 @@ use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use pxpl5_scene::Scene;
 use spatialgl::{
-    BinLayout, BinTolerance, Context, SpatialDisplay, SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, Workers,
+    BinLayout, BinTolerance, ColouredVertex, DrawContext, SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer,
+    Workers,
 };
 
 /// A figure of the paper, drawn again.
 #[derive(Clone, Debug)]
-pub struct Drawing {
+pub struct FigureDrawing {
     /// Number of the figure in the paper.
     pub number: u32,
     /// Subject of the figure in the paper's caption, and meaning of the pixels.
@@ -52,8 +53,8 @@ const COLOURS: [[u8; 3]; 8] = [
 /// # Errors
 ///
 /// Returns [`VolumeError`] if the scene cannot be drawn.
-pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, VolumeError> {
-    let drawing = |number, about, picture| Drawing { number, about, picture };
+pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<FigureDrawing>, VolumeError> {
+    let drawing = |number, about, picture| FigureDrawing { number, about, picture };
     Ok(vec![
         drawing(4, "slice volume: the double wedge of one slice of 12, seen along the axis", plan(ClipKind::Exact)?),
         drawing(5, "slice orientation: where the signed distances from the two planes are positive", orientation()?),
@@ -79,7 +80,7 @@ pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, Vo
     ])
 }
 
-impl Drawing {
+impl FigureDrawing {
     /// Returns all drawings on one sheet, three in a row.
     #[must_use]
     pub fn sheet(all: &[Self]) -> RgbImage {
@@ -154,8 +155,8 @@ fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
     let wall = [[-380.0, -64.0, 20.0], [380.0, -64.0, 20.0], [380.0, 64.0, 20.0], [-380.0, 64.0, 20.0]];
     let mut columns = Vec::new();
     for clip in [ClipKind::Exact, ClipKind::Hyperbolic] {
-        let buffer = VertexBuffer::new(wall.map(|corner| Vertex::new(corner.into(), [255; 3])).to_vec())?;
-        let mut context = Context::default();
+        let buffer = VertexBuffer::new(wall.map(|corner| ColouredVertex::new(corner.into(), [255; 3])).to_vec())?;
+        let mut context = DrawContext::default();
         context.draw(&buffer, 0..4, Topology::TriangleFan)?;
         let settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "wall", context.present(), workers)?;

@@ -110,13 +110,13 @@ impl ViewOptions {
 /// The light that reaches each pixel of a picture, in integer units. Integer sums are exact in any order and on any
 /// number of threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Light {
+pub struct PictureLight {
     size: Size,
     /// Light of each pixel of the picture: red, green and blue.
     sums: Vec<[u64; 3]>,
 }
 
-impl Light {
+impl PictureLight {
     fn dark(size: Size) -> Self {
         Self { size, sums: vec![[0; 3]; size[0] as usize * size[1] as usize] }
     }
@@ -196,7 +196,7 @@ pub fn view_planes(
     camera: &Camera,
     options: ViewOptions,
     workers: &dyn Workers,
-) -> Result<Light, PerspectaError> {
+) -> Result<PictureLight, PerspectaError> {
     sum(planes.size(), planes.slices(), camera, options, workers, &|k, each| {
         let row = planes.size()[0] / 8;
         for (at, word) in (0u32..).zip(planes.slice(k)).filter(|(_, word)| **word != 0) {
@@ -225,7 +225,7 @@ pub fn view_undithered(
     camera: &Camera,
     options: ViewOptions,
     workers: &dyn Workers,
-) -> Result<Option<Light>, PerspectaError> {
+) -> Result<Option<PictureLight>, PerspectaError> {
     let Some(colours) = frame.colours.as_ref() else { return Ok(None) };
     let size = frame.planes.size();
     let light = sum(size, frame.planes.slices(), camera, options, workers, &|k, each| {
@@ -251,12 +251,12 @@ fn sum(
     options: ViewOptions,
     workers: &dyn Workers,
     pixels: &EachPixel<'_>,
-) -> Result<Light, PerspectaError> {
+) -> Result<PictureLight, PerspectaError> {
     camera.check_before(size)?;
     // Each task sums a range of slices, so that the lock is taken rarely.
-    let total = Mutex::new(Light::dark(camera.size));
+    let total = Mutex::new(PictureLight::dark(camera.size));
     let part = |first: u32| {
-        let mut light = Light::dark(camera.size);
+        let mut light = PictureLight::dark(camera.size);
         for k in first..(first + SLICES_PER_TASK).min(slices) {
             let strobe = Strobe::new(k, slices, size, camera, options);
             pixels(k, &mut |x, y, levels| strobe.add(&mut light, x, y, levels));
@@ -305,7 +305,7 @@ impl Strobe {
     }
 
     #[inline(always)]
-    fn add(&self, light: &mut Light, x: u32, y: u32, levels: [u64; 3]) {
+    fn add(&self, light: &mut PictureLight, x: u32, y: u32, levels: [u64; 3]) {
         let u = f64::from(x) + 0.5 - self.half[0];
         let v = self.half[1] - f64::from(y) - 0.5;
         if self.cut[usize::from(u >= 0.0)] {

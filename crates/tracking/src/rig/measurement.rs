@@ -1,6 +1,7 @@
 use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
+use pxpl5_sim::Statistics;
 
 /// The report by which the host detects that the pendulum has passed its low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,66 +34,39 @@ pub struct OutsidePass {
     pub light_ps: u64,
 }
 
-/// Statistics of a latency over all passes of the pendulum, in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Latency {
-    /// Number of passes of the pendulum through its low point.
-    pub n: usize,
-    /// Mean latency over all passes of the pendulum, seconds.
-    pub mean_s: f64,
-    /// Sample standard deviation of the latency (division by n - 1), seconds. The value is NaN for a single pass.
-    pub deviation_s: f64,
-    /// Least latency of all passes, seconds.
-    pub least_s: f64,
-    /// Greatest latency of all passes, seconds.
-    pub greatest_s: f64,
+/// Returns the statistics of a latency over all passes of the pendulum, in seconds.
+fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
+    Statistics::of(passes.iter().map(span).map(|(from, to)| span_s(from, to)))
 }
 
-impl Latency {
-    fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Self {
-        let spans: Vec<f64> = passes.iter().map(span).map(|(from, to)| span_s(from, to)).collect();
-        let n = spans.len();
-        let mean_s = spans.iter().sum::<f64>() / n as f64;
-        // One pass has no deviation: the division gives NaN.
-        let variance = spans.iter().map(|s| (s - mean_s) * (s - mean_s)).sum::<f64>() / (n as f64 - 1.0);
-        Self {
-            n,
-            mean_s,
-            deviation_s: variance.sqrt(),
-            least_s: spans.iter().copied().fold(f64::INFINITY, f64::min),
-            greatest_s: spans.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
-    }
-}
-
-/// Tracking, rendering and total latency over all passes, measured with the oscilloscope ("outside") or by time stamps
-/// ("inside").
+/// Tracking, rendering and total latency over all passes in seconds, measured with the oscilloscope ("outside") or by
+/// time stamps ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
     /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
     /// inside latency begins at the report's time stamp.
-    pub tracking: Latency,
+    pub tracking: Statistics,
     /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
     /// frame. The inside latency ends when the pipeline counts the frame as shown.
-    pub rendering: Latency,
+    pub rendering: Statistics,
     /// Sum of tracking and rendering latency of each pass, from the motion to the display.
-    pub total: Latency,
+    pub total: Statistics,
 }
 
 impl Side {
     fn outside(passes: &[OutsidePass]) -> Self {
         Self {
-            tracking: Latency::over(passes, |p| (p.low_point_ps, p.dac_ps)),
-            rendering: Latency::over(passes, |p| (p.dac_ps, p.light_ps)),
-            total: Latency::over(passes, |p| (p.low_point_ps, p.light_ps)),
+            tracking: over(passes, |p| (p.low_point_ps, p.dac_ps)),
+            rendering: over(passes, |p| (p.dac_ps, p.light_ps)),
+            total: over(passes, |p| (p.low_point_ps, p.light_ps)),
         }
     }
 
     fn inside(passes: &[InsidePass]) -> Self {
         Self {
-            tracking: Latency::over(passes, |p| (p.sighting.measured_ps, p.started_ps)),
-            rendering: Latency::over(passes, |p| (p.started_ps, p.shown_ps)),
-            total: Latency::over(passes, |p| (p.sighting.measured_ps, p.shown_ps)),
+            tracking: over(passes, |p| (p.sighting.measured_ps, p.started_ps)),
+            rendering: over(passes, |p| (p.started_ps, p.shown_ps)),
+            total: over(passes, |p| (p.sighting.measured_ps, p.shown_ps)),
         }
     }
 }
@@ -164,7 +138,7 @@ impl Measurement {
     /// Returns the mean total latency on the oscilloscope minus the mean total latency by time stamps, seconds.
     #[must_use]
     pub fn outside_less_inside_s(&self) -> f64 {
-        self.outside.total.mean_s - self.inside.total.mean_s
+        self.outside.total.mean - self.inside.total.mean
     }
 
     /// Returns true if both measurements agree on average over all passes. "Outside" is the oscilloscope, and "inside"
@@ -174,8 +148,8 @@ impl Measurement {
     /// smaller only if the pipeline counts frames as shown during the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
-        let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
-        let rendering_s = self.outside.rendering.mean_s - self.inside.rendering.mean_s;
+        let tracking_s = self.outside.tracking.mean - self.inside.tracking.mean;
+        let rendering_s = self.outside.rendering.mean - self.inside.rendering.mean;
         let most_tracking_s = span_s(0, self.tracking_bound_ps) + ROUNDING_S;
         let most_rendering_s = span_s(0, self.rendering_bound_ps) + ROUNDING_S;
         let least_rendering_s = -span_s(0, self.rendering_early_ps) - ROUNDING_S;

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{HostLine, MagneticDistortion, SerialLine, TrackerFault};
+use super::{MagneticDistortion, SerialLine, SerialRead, TrackerFault};
 use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's serial port. The presets take every number from [`crate::config`].
@@ -42,7 +42,7 @@ pub struct TrackerConfig {
     /// The serial cable from tracker to host, or `None` if the latencies already include the time on the cable.
     pub serial: Option<SerialLine>,
     /// Method by which the host's kernel reads the serial port.
-    pub host: HostLine,
+    pub host: SerialRead,
     /// Time from the first report to the crash of a host with a patched kernel, which interrupts for each character.
     /// `None` if such a host never crashes. TR94 reports the crash for the Flock of Birds.
     pub crashes_patched_host_after_ps: Option<u64>,
@@ -89,7 +89,7 @@ impl TrackerConfig {
             sync_to_output_ps: position_latency_ps,
             position_latency_ps,
             orientation_latency_ps: table::ms_to_ps(tables.flock.orientation_latency),
-            host: HostLine::unix_by(tables),
+            host: SerialRead::unix_by(tables),
             crashes_patched_host_after_ps: Some(table::ms_to_ps(tables.flock.crash)),
             ..Self::ideal_by(tables)
                 .named("Ascension Flock of Birds", tables.flock.rate)
@@ -106,7 +106,7 @@ impl TrackerConfig {
 
     /// Returns the Flock of Birds on a host with a patched kernel, which crashes. The numbers come from `tables`.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
-        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
+        Self { host: SerialRead::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
 
     /// Returns UNC's optical ceiling tracker, with a total latency of 33 ms.
@@ -132,7 +132,7 @@ impl TrackerConfig {
     /// Returns the Polhemus 3Space with the numbers of `tables`.
     pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
-            host: HostLine::unix_by(tables),
+            host: SerialRead::unix_by(tables),
             distortion: Some(MagneticDistortion::floor_below_by(tables, DVec3::ZERO)),
             ..Self::ideal_by(tables)
                 .named("Polhemus 3Space", tables.space.rate)
@@ -162,7 +162,7 @@ impl TrackerConfig {
             orientation_bias_deg: 0.0,
             filter_gain: 1.0,
             serial: None,
-            host: HostLine::InterruptPerCharacter,
+            host: SerialRead::InterruptPerCharacter,
             crashes_patched_host_after_ps: None,
             distortion: None,
             faults: Vec::new(),
@@ -198,13 +198,13 @@ impl TrackerConfig {
 
     /// Returns the same tracker on a host whose kernel receives every character immediately, without polling.
     pub fn without_polling(self) -> Self {
-        Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
+        Self { host: SerialRead::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
     }
 
     /// Returns the same tracker on a host with an unpatched kernel, which polls the serial port. The value `host.poll`
     /// of `tables` is the polling interval.
     pub fn with_polling_by(self, tables: &Tables) -> Self {
-        Self { host: HostLine::unix_by(tables), ..self }
+        Self { host: SerialRead::unix_by(tables), ..self }
     }
 
     fn named(self, name: &str, rate_hz: u64) -> Self {

@@ -1,4 +1,4 @@
-use super::{HostLine, TrackerConfig, TrackerFault};
+use super::{SerialRead, TrackerConfig, TrackerFault};
 use crate::error::SettingError;
 use crate::time::{PS_PER_S, tick_ps};
 
@@ -84,7 +84,7 @@ fn check_times(config: &TrackerConfig) -> Result<(), SettingError> {
     if config.position_latency_ps.max(config.orientation_latency_ps) > config.sync_to_output_ps {
         return Err(SettingError::Contradiction { what: "a latency is longer than the time from sync to output" });
     }
-    if let HostLine::Polled { period_ps } = config.host {
+    if let SerialRead::Polled { period_ps } = config.host {
         SettingError::check("poll period, ps", period_ps as f64, 1.0, longest)?;
     }
     Ok(())
@@ -136,7 +136,7 @@ mod tests {
             TrackerConfig { position_noise_m: -1.0, ..good() },
             TrackerConfig { orientation_bias_deg: f64::NAN, ..good() },
             TrackerConfig { position_latency_ps: u64::MAX, ..good() },
-            TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
+            TrackerConfig { host: SerialRead::Polled { period_ps: 0 }, ..good() },
             TrackerConfig { serial: Some(SerialLine { baud: 0, ..SerialLine::fastrak() }), ..good() },
             TrackerConfig { faults: vec![TrackerFault::RandomDropout { probability: 1.0 }], ..good() },
             TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },

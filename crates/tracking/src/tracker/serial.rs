@@ -46,7 +46,7 @@ impl SerialLine {
 /// The method by which the host's kernel reads the serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum HostLine {
+pub enum SerialRead {
     /// The kernel polls the port periodically, and the seed determines the phase. A record waits for at most one
     /// period. All waiting times are equally probable over all seeds.
     Polled {
@@ -57,7 +57,7 @@ pub enum HostLine {
     InterruptPerCharacter,
 }
 
-impl HostLine {
+impl SerialRead {
     /// Returns the unpatched kernel, which polls the serial port every 30 ms (TR94).
     pub fn unix() -> Self {
         Self::unix_by(&Tables::PAPERS)
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_record_that_completes_at_the_look_is_seen_and_one_picosecond_later_waits() {
-        let line = HostLine::unix();
+        let line = SerialRead::unix();
         let look = 5 + 30 * PS_PER_MS;
         assert_eq!(line.seen_ps(look, 5), look);
         assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
@@ -107,12 +107,12 @@ mod tests {
     #[test]
     fn unchecked_lines_are_slow_or_late_but_never_a_panic() {
         assert!(SerialLine { record_bytes: u32::MAX, baud: 0, byte_bits: u32::MAX }.transfer_ps(u32::MAX) > 0);
-        assert_eq!(HostLine::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
-        assert_eq!(HostLine::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
+        assert_eq!(SerialRead::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
+        assert_eq!(SerialRead::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
     }
 
     #[test]
     fn a_patched_kernel_adds_nothing() {
-        assert_eq!(HostLine::InterruptPerCharacter.seen_ps(123, 5), 123);
+        assert_eq!(SerialRead::InterruptPerCharacter.seen_ps(123, 5), 123);
     }
 }

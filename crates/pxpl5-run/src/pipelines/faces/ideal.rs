@@ -3,7 +3,7 @@
 use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;
 use crate::pipelines::faces::latched_head::lights_of;
-use address_recalculation::{CubeFace, Scan};
+use address_recalculation::{CubeFace, FaceScan};
 use pphigs::oracle::ideal_picture_of;
 use pphigs::{DisplayList, FrameView};
 use pxpl5_machine::HostLine;
@@ -30,7 +30,7 @@ pub(super) struct IdealFaces {
     pub(super) faces: Arc<Faces>,
     pub(super) list: Arc<DisplayList>,
     pub(super) warped: WarpedLists,
-    pub(super) scan: Scan,
+    pub(super) scan: FaceScan,
     pub(super) next: PictureNumber,
 }
 
@@ -57,7 +57,7 @@ impl HostLine for IdealFaces {
 }
 
 /// Returns the last instant before a field begins.
-fn before(scan: &Scan, field: PeriodNumber) -> Time {
+fn before(scan: &FaceScan, field: PeriodNumber) -> Time {
     Time(scan.retrace(field).0.saturating_sub(BEFORE_RETRACE.0))
 }
 
@@ -86,7 +86,7 @@ impl IdealFaces {
 
 /// Returns the setup of a host whose updates are shown at the next retrace. The views are predicted for the time at
 /// which the next field is lit.
-pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
+pub(super) fn seen_next(setup: &Setup, scan: FaceScan) -> Setup {
     let wanted = Arc::clone(&setup.wanted);
     let aim = setup.aim;
     let views = move |number, now| {

@@ -1,6 +1,6 @@
 //! Schedule of the orientations that a host sends to a display that latches orientations by line or by pixel.
 
-use address_recalculation::{Latch, Scan};
+use address_recalculation::{FaceScan, Latch};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
@@ -13,7 +13,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 /// orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
-    scan: Scan,
+    scan: FaceScan,
     /// Delay of a pixel through all stages of the display's pipeline.
     depth: Span,
     /// Time from one load of the display's orientation register to the next load within a line.
@@ -37,7 +37,7 @@ impl LoadSchedule {
     /// Creates a schedule. Returns `None` for a display that latches one orientation per field.
     ///
     /// The host of such a display sends each orientation as soon as it is known.
-    pub(crate) fn new(scan: Scan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
+    pub(crate) fn new(scan: FaceScan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
         let loads = match latch {

@@ -1,7 +1,7 @@
 //! Policy `objects`: each structure is in the slowest display memory in which its image stays correct.
 
 use super::plan::{Due, DuePolicy, Updates};
-use address_recalculation::Scan;
+use address_recalculation::FaceScan;
 use address_recalculation::priority::{ObjectView, Objects, PriorityTiming, Threshold};
 use glam::DVec3;
 use pphigs::{DisplayList, DisplayStructure};
@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 /// Priority rendering by objects: assigns each structure to the slowest display memory in which its image stays
 /// correct.
 pub(super) struct ByObjects {
-    scan: Scan,
+    scan: FaceScan,
     policy: Objects,
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
@@ -48,7 +48,7 @@ fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphe
 }
 
 impl ByObjects {
-    pub(super) fn new(list: &DisplayList, scan: Scan, timing: &PriorityTiming) -> Self {
+    pub(super) fn new(list: &DisplayList, scan: FaceScan, timing: &PriorityTiming) -> Self {
         let spheres: Vec<ObjectSphere> =
             list.structures.iter().map(|structure| sphere_around(list, structure)).collect();
         Self {

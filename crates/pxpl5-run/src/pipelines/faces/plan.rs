@@ -3,7 +3,7 @@
 
 use crate::pipeline::Setup;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
-use address_recalculation::Scan;
+use address_recalculation::FaceScan;
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
@@ -141,7 +141,7 @@ pub(super) trait DuePolicy {
 /// cycle takes one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
-    scan: Scan,
+    scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
     /// Field in which the last cycle began.
@@ -149,7 +149,7 @@ pub(super) struct Cycles<P> {
 }
 
 impl<P: DuePolicy> Cycles<P> {
-    pub(super) const fn new(updates: Updates, scan: Scan, policy: P) -> Self {
+    pub(super) const fn new(updates: Updates, scan: FaceScan, policy: P) -> Self {
         Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 
