@@ -108,13 +108,15 @@ const NEVER: u64 = u64::MAX;
 /// the greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins. The next field, `mode`, is the pairing mode at this address.
+    /// Address at which the block begins.
     pub(crate) pc: u32,
+    /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Pairing mode of the code that follows the block. The next field is the address of this code.
+    /// Pairing mode (single instructions or pairs) after the block's last instruction or pair before the delay slot.
     pub(crate) after: Mode,
+    /// Address after the block's last instruction or pair before the delay slot.
     pub(crate) next: u32,
     /// Number of instructions or pairs. A pair counts as one. The delay slot does not count.
     pub(crate) count: usize,

@@ -25,9 +25,9 @@ struct Course<'a> {
     units: usize,
     /// Index of the block's last instruction or pair.
     last: usize,
-    /// Addresses of all data accesses of the block. The next field, `accessed`, is the number of accesses counted so
-    /// far.
+    /// Addresses of all data accesses of the block.
     accesses: &'a [u32],
+    /// Number of data accesses whose clocks were counted so far.
     accessed: usize,
     /// Position in the block up to which clocks are counted, in thirds of an instruction or pair.
     at: usize,

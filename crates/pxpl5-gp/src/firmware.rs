@@ -80,9 +80,9 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices that the programs have transformed since the start.
     pub(crate) vertex_transforms: u64,
-    /// CPU time requested so far for the message software. The next field, `answer_work`, is the CPU time of work that
-    /// answers messages.
+    /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
+    /// CPU time requested so far for work that answers messages.
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
@@ -97,9 +97,9 @@ pub(crate) struct Shared {
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch for which every receiver has accepted at least one message. The next field, `accepted`,
-    /// is the number of the last batch whose messages are all accepted.
+    /// Number of the last batch of messages for which every receiver has accepted at least one message.
     pub(crate) draining: u64,
+    /// Number of the last batch of messages that the receivers have accepted completely.
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
     /// Number of waits that have ended so far. The board polls its programs until a round of polls leaves this number

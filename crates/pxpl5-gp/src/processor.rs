@@ -87,11 +87,10 @@ pub enum ProcessorFault {
         gp: NodeId,
         /// Bin context, 0 or 1, that requested memory.
         context: u8,
-        /// Number of free bytes for this context. The free range lies between the data below it and the other context
-        /// (or the end of memory).
+        /// Number of bytes that the context requested.
         needed_bytes: u32,
-        /// Number of bytes that are free for this context: between the data below it and the other context or the end
-        /// of memory.
+        /// Number of bytes that are free for the context. The free range lies between two neighbours: the program's
+        /// data or the lower context, and the upper context or the end of memory.
         available_bytes: u32,
     },
     /// The program has no label with the name of the requested entry.
@@ -165,8 +164,9 @@ pub struct Processor {
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses of the breakpoints. The next field, `hits`, holds the hits since the last [`Processor::take_hits`].
+    /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
+    /// Breakpoint hits since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct CommandBatch {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times that are computed when words arrive or when a copy ends.
+/// Future times of the FIFO, which are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
@@ -55,8 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index of the command whose start makes room for the word with index `word`. If no start of these
-    /// commands makes room for this word, the function returns the last index.
+    /// Returns the index, within this sequence, of the command whose start makes room for the word with index `word`.
+    /// If no command of the sequence makes room for this word, the function returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -83,12 +83,13 @@ impl Departure {
 struct StartTimes(VecDeque<Departure>);
 
 impl StartTimes {
-    /// Returns the time at which the words with indices `first` to `last` have all entered. The result is at least
+    /// Returns the time at which all words with indices `first` to `last` have entered the FIFO. The result is at least
     /// `soonest`.
     ///
     /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
-    /// decrease from call to call. For commands that start at equal intervals, only the last command that makes room
-    /// matters. The reason is that an interval is at least as long as the transfer of a command's words.
+    /// decrease from call to call. Of each sequence of commands that start at equal intervals, only the last command
+    /// that makes room matters. The reason is that an interval is at least as long as the transfer of a command's
+    /// words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -103,7 +104,7 @@ impl StartTimes {
         complete
     }
 
-    /// Removes the commands that made room only for words before `first`.
+    /// Removes the commands whose starts made room only for words before `first`.
     #[inline]
     fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -131,54 +132,55 @@ pub(crate) struct InputFifo {
     /// Time from which the controller is free. `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
-    /// Total time for which blocking commands have occupied the controller.
+    /// Total time for which blocking commands (copies of regions) have occupied the controller.
     blocked: Span,
     last_block: Block,
     /// Start and end of the last interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of arriving and leaving words, kept only while the FIFO is watched.
+    /// Record of arriving and leaving words. `None` if no caller has asked for this record.
     watched: Option<Watched>,
 }
 
-/// Longest execution time of a command that counts as the selection of the region to copy. A longer command draws the
-/// region. The limit matters if the controller waited before the command. A selection takes 6 clocks of 40 MHz, which
-/// are 150 ns.
+/// Longest execution time of commands that count as the selection of the region to copy. Commands that take longer
+/// count as drawing. If the controller waits before the selection, the drawing of the region ends at the start of this
+/// wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// Time at which the previous blocking command ended. From this time on, the controller could execute the commands
-    /// before this command. The next field, `finished_at`, is the end time of the last of these commands. The selection
-    /// of the region to copy does not count if the controller waited for it.
+    /// End time of the previous blocking command. From this time on, the controller could execute the commands between
+    /// the two blocking commands.
     pub(crate) begun_at: Time,
+    /// End time of the last command before this blocking command. If the controller waited for the selection of the
+    /// region to copy, the selection does not count.
     pub(crate) finished_at: Time,
     /// Start time of the blocking command.
     pub(crate) start: Time,
     /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this command. The next field, `resumed_at`, is the time at which the
-    /// previous blocking command ended.
+    /// Execution time of all commands before this command, since the start of the run.
     busy: Span,
+    /// Time of the latest end of a blocking command.
     resumed_at: Time,
 }
 
-/// Record of the words that enter and leave a watched FIFO. Its times can lie in the future.
+/// Record of the words that enter and leave the FIFO. The times of the record can lie in the future.
 #[derive(Debug, Default)]
 struct Watched {
-    /// Changes of the FIFO's content since the last [`InputFifo::take_changes`]: a time, and the number of words that
-    /// enter (positive) or leave (negative).
+    /// Changes of the number of words in the FIFO since the last [`InputFifo::take_changes`]. Each entry has a time,
+    /// and the number of words that enter (positive) or leave (negative).
     changes: Vec<(Time, i64)>,
     entered: Course,
     left: Course,
 }
 
-/// A sum that only increases, as a function of time. The record begins at the last call of `discard_before`.
+/// A growing number of words as a function of simulated time. The record begins at the last call of `discard_before`.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the sum increases, in ascending order, each with the new sum.
+    /// Times at which the number of words grows, in ascending order, each with the new number.
     steps: VecDeque<(Time, u64)>,
-    /// The sum before the first entry of `steps`.
+    /// The number of words before the first entry of `steps`.
     before: u64,
     after: u64,
 }
@@ -259,7 +261,7 @@ impl InputFifo {
     }
 
     /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. The result assumes that all received but unfinished commands run without a gap from `now` on.
+    /// event. The function assumes that all received but unfinished commands run without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -287,7 +289,7 @@ impl InputFifo {
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Removes the parts of the record for times before `now`.
+    /// Removes the entries of the word record for times before `now`.
     pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.discard_before(now);
@@ -347,13 +349,13 @@ impl InputFifo {
         progress
     }
 
-    /// Computes all commands of a batch at once. The results equal the results of [`InputFifo::arrival`] and
-    /// [`InputFifo::start`], called for each command.
+    /// Computes the times of all commands of a batch in one step. The results equal the results of
+    /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. Each command after the first then starts at the end of the previous command. At
-    /// this time its last word has arrived, because its first word found room at the latest at the start of the
-    /// previous command.
+    /// as the transfer of its words. Under these conditions, each command after the first starts at the end of the
+    /// previous command. The reason is that the command's first word finds room at the latest at the start of the
+    /// previous command. The last word has therefore arrived when the previous command ends.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
@@ -414,8 +416,8 @@ impl InputFifo {
         None
     }
 
-    /// Starts a command that has arrived completely. While a blocking command runs, the function puts the command into
-    /// the queue. Returns the start time if the command blocks.
+    /// Starts a command that has arrived completely. If a blocking command runs, the function puts the new command into
+    /// the queue instead. Returns the start time if the new command blocks.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -472,7 +474,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// A reference model of the rules, which handles one word at a time.
+    /// A reference model of the FIFO's rules, which handles one word at a time.
     struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,

@@ -2,7 +2,7 @@
 //!
 //! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
-//! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
+//! expressions in all pixels together. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
 //! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
 //! that can execute the published program of a triangle and the shading at the end of a frame.
 //!
@@ -206,9 +206,10 @@ pub enum ArrayInstruction {
     EnableStore(Operand),
     /// Combines Enable with a field of one bit: E := E AND field.
     EnableAnd(Operand),
-    /// Selects the context and the region for the following instructions.
+    /// Selects the region for the following instructions, and the context (part of pixel memory) that holds it.
     Select {
-        /// First bit of the context in pixel memory. This number is added to the addresses of relative operands.
+        /// First bit of the context (the part of pixel memory that holds the region). This number is added to the
+        /// addresses of relative operands.
         context_base: u8,
         /// Screen x of the array's left column.
         left: u16,

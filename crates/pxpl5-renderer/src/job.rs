@@ -19,11 +19,11 @@ pub struct ArrayPool {
 /// Working memory of one thread that computes pixels.
 struct ArrayAndWords {
     array: Lanes,
-    /// Buffer for the words of command lists. It is reused to avoid allocations.
+    /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
     words: Vec<Word>,
 }
 
-/// Cache key of a region without primitives. The key has all data that affect the pixels.
+/// Cache key of a region without primitives. The key contains all data that affect the pixels of the region.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
     /// Words of all commands of the region except copy commands.
@@ -80,8 +80,8 @@ impl ArrayPool {
     }
 }
 
-/// A pending computation of a region's pixels, with all command lists sent to a region context since the last clear of
-/// this context.
+/// A computation of a region's pixels that has not run yet. The job holds all command lists sent to a region context
+/// (part of pixel memory) since the last clear of this context.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
@@ -160,8 +160,8 @@ impl PixelJob {
         self.content.of(colours, || self.depths(array))
     }
 
-    /// Executes words, and returns the pixels of the last output to this job's target. A fault ends the list, as on the
-    /// hardware. Pixels drawn before the fault stay.
+    /// Executes words, and returns the pixels of the last output to the frame buffer of this job. A fault ends the
+    /// list, as on the hardware. Pixels drawn before the fault stay.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -225,7 +225,8 @@ mod tests {
         }
     }
 
-    /// Returns the pixels of a region for picture number `picture`, cleared with a colour.
+    /// Returns the pixels of a region after a clear command with the given colour. `picture` is the picture number of
+    /// the region.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

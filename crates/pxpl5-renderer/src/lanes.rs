@@ -40,7 +40,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Columns of the most recently used context. `None` if no context was used.
+    /// Columns of pixel memory for the most recently used context (region in pixel memory). `None` if no context was
+    /// used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -107,7 +108,8 @@ impl Lanes {
 }
 
 impl Lanes {
-    /// Returns the depths of the selected context's upper left `width` x `height` pixels, row by row.
+    /// Returns the depths of the upper left `width` x `height` pixels of the selected context (region in pixel memory),
+    /// row by row.
     ///
     /// A depth has as many bits as the layout's field Z.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
@@ -284,7 +286,7 @@ mod tests {
         }
 
         /// Creates triangles that are a few columns wide and at least as many rows high. The triangles can cross the
-        /// region's borders.
+        /// borders of the region.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {

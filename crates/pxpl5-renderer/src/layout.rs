@@ -14,9 +14,9 @@ use std::ops::RangeInclusive;
 pub struct ContextPlan {
     /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Number of regions that share the array.
+    /// Number of contexts: regions that share the array.
     pub contexts: u8,
-    /// Bits of pixel memory that each context takes.
+    /// Bits of pixel memory that each context (region in the array) takes.
     pub context_bits: u8,
     /// Field of the colour: 24 bits, 0xRRGGBB.
     pub colour: Operand,
@@ -140,7 +140,7 @@ impl Layout {
         &self.0
     }
 
-    /// Returns the first bit of context `context` in pixel memory.
+    /// Returns the first bit of context `context` (a region) in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
@@ -206,7 +206,7 @@ fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks a field's width against `allowed`. `expected` is the text of the allowed widths for the error.
+/// Checks the width of a field against `allowed`. `expected` describes the allowed widths in the error text.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -240,7 +240,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns one entry for each range: the text of its error, or `None` if it has no error.
+/// Returns one entry for each bit range of a plan: the text of the range's error, or `None` if the range has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -251,8 +251,8 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory. Returns `None` for
-/// other ranges.
+/// Returns the error text of a bit range that overlaps an earlier range or extends beyond pixel memory. Returns `None`
+/// for other ranges.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));

@@ -19,8 +19,9 @@ pub struct RendererSnapshot {
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region for which the last started commands draw, until its copy command starts. `None` if the FIFO is not
-    /// watched, or if the sender of the commands does not state the region.
+    /// Region for which the commands that started last draw. The value becomes `None` when the region's copy command
+    /// starts. The value is also `None` if the FIFO is not watched, or if the sender of the commands does not state the
+    /// region.
     pub drawing: Option<RegionPlace>,
     /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,
@@ -37,7 +38,7 @@ impl RendererSnapshot {
     }
 }
 
-/// Received command lists whose effects are visible in pixel memory, or will be visible later.
+/// Received command lists that still affect pixel memory, or will affect pixel memory later.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
@@ -56,7 +57,7 @@ struct SentList {
 }
 
 impl SentLists {
-    /// Adds the list of a received message. `started` is the number of words in commands that have started.
+    /// Adds the command list of a received message. `started` is the number of words in commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
@@ -87,8 +88,8 @@ impl SentLists {
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the index of the first word of a list: the last list of a context whose clear has started. Returns 0 if
-    /// no clear has started.
+    /// Returns the index of the first word of the latest list in a context whose clear command has started. Earlier
+    /// lists of the context no longer affect pixels. Returns 0 if no clear command has started.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context

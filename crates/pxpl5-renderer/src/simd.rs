@@ -84,7 +84,7 @@ impl Vectors {
     }
 }
 
-/// A vector unit that exists in this processor, according to a check.
+/// A vector unit that the processor has, according to a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
@@ -111,7 +111,7 @@ impl PresentVectors {
     }
 }
 
-/// A loop to vectorize. Its `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
+/// A loop to vectorize. The method `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
 /// instructions in `run`.
 pub(crate) trait VectorKernel {
     type Output;
@@ -375,7 +375,7 @@ mod tests {
         }
     }
 
-    /// Results of a unit's operations by name, and its number of lanes.
+    /// Results of the operations of a vector unit, each with the name of the operation.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
     /// A kernel that applies every operation to integers in all lanes, and to rows of pixels.

@@ -33,9 +33,11 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word slots until the message ends. The next field, `message`, holds the message until the receiver
-    /// gets it. Only [`Ring::move_every_word`](crate::Ring::move_every_word) uses these two fields.
+    /// Number of word times until the message ends. Used only after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) slots_left: u64,
+    /// The message until the receiver gets it. Used only after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) message: Option<Box<Message>>,
 }
 

@@ -25,7 +25,7 @@ impl SerialOperand {
     }
 }
 
-/// The second factor of a multiplication.
+/// The second factor of a multiplication: a field of pixel memory or a constant.
 enum Factor<'a> {
     Field(&'a SerialOperand),
     Constant(i32),
@@ -93,8 +93,8 @@ impl Tile {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Stores in a field the bits that `f` returns. The function handles one bit per clock, the least significant bit
-    /// first.
+    /// Computes a field bit by bit, the least significant bit first. The function `f` returns the value of each bit in
+    /// all pixels of a tile. Each bit takes one clock.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -171,8 +171,8 @@ impl Tile {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Returns the pixels in which a < b. In exactly these pixels, the subtraction a - b over `clocks` bits ends with a
-    /// borrow.
+    /// Returns the pixels in which a < b. The function subtracts b from a, over `clocks` bits, and returns the pixels
+    /// in which the subtraction ends with a borrow.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;

@@ -7,21 +7,21 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression.
+/// A consumer of the bits of an expression, which arrive one by one.
 trait BitSink {
-    /// Applies bit `t` of the expression, for one vector of pixels of a tile.
+    /// Applies bit `t` of the expression to one vector of pixels of a tile.
     ///
-    /// `at` is the index of the vector's first word in a plane. `carry` must be zero for the first bit.
+    /// `at` is the index of the vector's first word in a bit plane of the tile. `carry` must be zero for the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Receives the carry that remains after the last bit.
+    /// Receives the carry that remains after the last bit of the expression.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
 /// The use of an expression by the pixels: the range of used bits, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks in which the pixels use the arriving bit. One bit of the expression arrives in each clock.
+    /// Clocks in which the pixels use the arriving bit of the expression. One bit arrives in each clock.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
@@ -88,7 +88,7 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// A sink that clears Enable in the pixels whose bit is set.
+/// A sink that clears the Enable bit of the pixels for which the expression's bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -127,7 +127,8 @@ impl BitSink for AddBits {
     }
 }
 
-/// A sink that clears Enable in the pixels where the bits from bit `shift` on are not less than a field.
+/// A sink that clears the Enable bit of the pixels in which the expression, from its bit `shift` on, is not less than a
+/// field.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -146,7 +147,7 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A sink that stores the difference of the expression and a source field, from bit `shift` of the difference on.
+/// A sink that stores the expression minus a source field. The low `shift` bits of the difference are left out.
 struct StoreDifference {
     first: usize,
     shift: usize,

@@ -56,7 +56,8 @@ pub(super) enum BitOrigin {
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels. Returns `None` for other kinds of instructions.
+    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
+    /// kind.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -98,7 +99,8 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns the tiles in which the sign of an expression is known, for each expression whose sign disables pixels.
+    /// Returns, for each expression of the run, the tiles in which all pixels have the same sign of the expression.
+    /// Only expressions that disable pixels by their sign get such tiles.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -110,7 +112,7 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles that the run's first instructions disable completely, as one bit for each tile.
+    /// Returns the tiles in which the run's first instructions disable all pixels, as one bit for each tile.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -158,8 +160,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers bits to the vectors of a tile that contain enabled pixels. `word` is the index of the word of the
-    /// streams that is used.
+    /// Delivers the bits of an instruction to those vectors of a tile that contain enabled pixels. `word` selects the
+    /// expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -170,7 +172,8 @@ impl Delivery {
     }
 }
 
-/// Sets of tiles in which the sign of an expression is known without serial arithmetic.
+/// Sets of tiles in which all pixels have the same sign of an expression. No serial arithmetic is needed to find these
+/// tiles.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
     /// Tiles in which the expression is negative at every pixel, as one bit for each tile.
@@ -180,8 +183,8 @@ struct Signs {
 }
 
 impl Signs {
-    /// Finds the signs from the values at the corners of each tile. If the expression overflows anywhere in the array,
-    /// no sign is known.
+    /// Finds the signs of an expression from the expression's values at the corners of each tile. If the expression
+    /// overflows anywhere in the array, no sign is known.
     #[inline(always)]
     fn from_corners<V: SimdVector>(e: &Linear) -> Self {
         if wraps(e) {

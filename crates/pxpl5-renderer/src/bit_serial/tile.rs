@@ -26,7 +26,7 @@ pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
-    /// Number of clocks in which bit planes of this tile have moved.
+    /// Number of clocks in which bits of this tile have moved.
     pub(super) clock: u64,
 }
 
@@ -83,8 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the place of row `y` of a tile in a plane of the array. The place is the index of a word, and the row's
-/// first bit in this word.
+/// Returns the position of row `y` of tile `number` in a plane of the array. The position is the index of a word, and
+/// the row's first bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

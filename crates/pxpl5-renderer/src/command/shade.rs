@@ -101,8 +101,8 @@ impl Shade {
         Ok(out)
     }
 
-    /// Computes the brightness of the object's colour, in the low 8 bits of `f.diffuse`. Also computes the highlight,
-    /// in bits 10 to 18 of `f.c`.
+    /// Computes the brightness of the object's colour in the low 8 bits of `f.diffuse`, and the highlight in bits 10 to
+    /// 18 of `f.c`.
     fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
@@ -163,8 +163,8 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Raises the cosine of the highlight to the power 32, and returns the field with the result. The squares go
-/// alternately to `f.a` and `f.b`.
+/// Raises the cosine of the highlight to the power 32, and returns the field with the result. Each step squares the
+/// value and stores it in `f.a` or `f.b` alternately.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {

@@ -73,7 +73,8 @@ pub struct PhongSphereCommand {
     pub colour: u32,
 }
 
-/// Number of root bits for which the operands of [`SphereBody`] are defined.
+/// Number of bits of a root for which the operands of [`SphereBody`] are defined. Layouts with narrower roots use the
+/// upper bits of these operands.
 const ROOT_BITS: u8 = 12;
 /// Number of upper bits of the root that are multiplied by a colour's factor.
 const COLOUR_ROOT_BITS: u8 = 8;
@@ -86,7 +87,7 @@ pub(crate) struct SphereScratch {
     pub(crate) root: Operand,
     /// New depth. The depth occupies the bits of the radicand, which is no longer needed after the root.
     pub(crate) z: Operand,
-    /// Product of root and factor, 8 + 10 bits. The product also occupies the bits of the radicand.
+    /// Product of the root and a colour's factor, 8 + 10 bits. The product also occupies the bits of the radicand.
     product: Operand,
 }
 

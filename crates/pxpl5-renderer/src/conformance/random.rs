@@ -41,8 +41,8 @@ impl Random {
         low + self.below((high - low) as u64) as i64
     }
 
-    /// Returns a list that mostly consists of commands of the layout, with some single instructions and, rarely,
-    /// invalid words.
+    /// Returns a random list of words. The list mostly consists of commands of the layout, with some single
+    /// instructions and, rarely, invalid words.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
         let mut last = self.command(layout);
@@ -203,8 +203,8 @@ impl Random {
     }
 }
 
-/// Returns the same shape with other colours. The depths are equal to the depths of the old shape, so the depth test
-/// fails at every pixel that the old shape has drawn.
+/// Returns a command that draws the same shape with other colours. The depths are also the same, so the depth test
+/// fails at every pixel that `command` has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {

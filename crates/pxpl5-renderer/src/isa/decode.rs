@@ -49,7 +49,7 @@ pub enum DecodeErrorKind {
     /// of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
-    /// The number of a backing store block is too large.
+    /// The number of a block of the backing store is 128 or more.
     #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
     /// The lines, region grid or region of an output instruction are invalid.

@@ -9,7 +9,8 @@ use pxpl5_wire::{LANES, Linear, LinearLanes};
 /// Number of columns of the array, and of its rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// Margin in pixels. The margin is greater than the rounding error of a quotient, but small enough to add few pixels.
+/// Margin in pixels around the computed bounds. The margin is greater than the rounding error of a quotient, but small
+/// enough to add few pixels.
 const MARGIN: f64 = 1e-3;
 
 /// The pixels `left .. right` of the rows `top .. bottom`.
@@ -31,8 +32,8 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit of x in row y because of one edge. With `from_left`, the limit is `x >= (b y + c) * scale`, else it is
-/// `x <= (b y + c) * scale`. All numbers except `scale` are exact.
+/// Limit that one edge sets on the columns x of row y. If `from_left` is true, the limit is `x >= (b y + c) * scale`,
+/// else it is `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -228,7 +229,8 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and last pixel between `low` and `high`, for each triangle.
+/// Returns the first and the last pixel between `low` and `high`, for each triangle. The interval is widened by
+/// [`MARGIN`] at both ends.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -278,8 +280,8 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    /// Returns an edge with coefficients of any size or zero. Constants can be extreme, so many edges overflow in the
-    /// array.
+    /// Returns an edge expression with random coefficients of any size or zero. Constants can be extreme, so many of
+    /// these expressions overflow in the array.
     fn any_edge(random: &mut Random) -> Linear {
         let [a, b, c] = [(); 3].map(|()| {
             let bits = 1 + random.below(32) as u32;

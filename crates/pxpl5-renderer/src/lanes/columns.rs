@@ -148,8 +148,8 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Returns the first bits of all columns. A column begins at every bit at which a field of the layout begins or ends.
-/// Longer columns are cut into columns of at most 32 bits.
+/// Returns the first bits of all columns of pixel memory. A column begins at every bit at which a field of the layout
+/// begins or ends. Longer columns are cut into columns of at most 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
     // First and last bits of the layout's fields.
@@ -190,7 +190,7 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Indices of the columns that hold the fields of the selected context.
+/// Indices of the columns that hold the fields of the selected context (region in pixel memory).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
     /// First bit of the context in pixel memory.

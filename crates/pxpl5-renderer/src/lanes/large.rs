@@ -12,7 +12,7 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns and shifts with which a sphere is drawn in this layout.
+/// Columns of pixel memory and bit shifts with which a sphere is drawn in this layout.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -109,8 +109,8 @@ impl Lanes {
         Some(())
     }
 
-    /// Stores the coefficients for later reuse. Returns the sphere with the array's upper left pixel as origin, and
-    /// with shifts for this layout.
+    /// Stores the coefficients of a sphere, so that a later instruction can reuse them. Returns the sphere with the
+    /// array's upper left pixel as origin, and with shifts for this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

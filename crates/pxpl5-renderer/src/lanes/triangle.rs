@@ -65,7 +65,7 @@ pub(super) struct DrawBatch<'a, P> {
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the object's colour. For a triangle with interpolated colour, the result has no meaning.
+    /// Returns the colour of the triangle's object. For a triangle with interpolated colour, the result has no meaning.
     fn colour(&self) -> Word;
 }
 
@@ -114,10 +114,10 @@ impl Surface for BatchSurface<'_> {
 
 /// A triangle that is being drawn.
 struct CurrentTriangle<S> {
-    /// Edge expressions relative to the array's upper left pixel.
+    /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the values of Enable after this triangle.
+    /// True if a later command reads the values of the Enable register after this triangle.
     keep: bool,
 }
 
@@ -311,8 +311,8 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Returns a first column from which one vector covers all columns. If possible, the column is a multiple of the
-/// vector's lanes. Returns `None` if one vector is too short.
+/// Returns a first column from which one vector covers the columns `left` to `right`. If possible, the column is a
+/// multiple of the vector's lanes. Returns `None` if one vector is too short.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;

@@ -33,7 +33,8 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns of the selected context. The result is cached until another context is selected.
+    /// Returns the columns that hold the fields of the selected context (region in pixel memory). The result is cached
+    /// until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -52,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns that hold x, y and z of the selected context's normals. Returns `None` if the layout has no
-    /// normals.
+    /// Returns the columns that hold x, y and z of the normals of the selected context (region in pixel memory).
+    /// Returns `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -145,8 +146,8 @@ impl Lanes {
     }
 }
 
-/// Returns the word position of the last coefficients in the last of some commands. Returns `None` if there are no
-/// commands.
+/// Returns the index of the word at which the last coefficients begin, in a sequence of commands with `words` words
+/// each. The coefficients belong to the last command. Returns `None` if there are no commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
