@@ -39,7 +39,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the number of changes above `latest`. The number then differs from the numbers of all earlier states.
+    /// Raises the number of changes above `latest`, so that later states of the array differ in this number from all
+    /// earlier states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }

@@ -1,5 +1,5 @@
-//! The clock of the processor: instruction issue, freezes, caches and queues. The clock receives every executed block
-//! and changes no value of the program.
+//! The clock of the processor: instruction issue, freezes, caches and queues. The clock counts the time of every
+//! executed block of code, and changes no register or memory.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -120,7 +120,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`. Several processors share `numbers`.
+    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering of a shared store of decoded
+    /// programs. The memoized clocks of the store refer to this numbering.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -151,7 +152,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block whose whole execution is not memoized as one run.
+    /// Counts the clocks of an executed block whose clocks are not memoized as a whole.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -312,7 +313,8 @@ impl Clock {
         Some(transfer)
     }
 
-    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if the freeze row is enabled.
+    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if row `why` of the freeze table
+    /// is enabled.
     fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);

@@ -276,7 +276,8 @@ impl Cpu {
         }
     }
 
-    /// Returns the control flow after an instruction. If the instruction trapped, the cause is recorded.
+    /// Returns the control flow after an instruction. If the instruction trapped, the function records the cause of the
+    /// trap.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))

@@ -36,7 +36,8 @@ impl Fetch {
         self.line
     }
 
-    /// Records `line` as the cache line of the last fetch. This call follows the reuse of a run's memoized clocks.
+    /// Records `line` as the cache line of the last fetch. The clock calls this function after it has reused memoized
+    /// clocks instead of counting each fetch.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;

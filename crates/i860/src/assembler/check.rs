@@ -88,7 +88,7 @@ impl PipeFill {
     }
 }
 
-/// Effect of an instruction on the pipe of the adder, then on the pipe of the multiplier.
+/// Effects of an instruction on the pipe of the adder (first elements) and on the pipe of the multiplier (second elements).
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],

@@ -7,29 +7,30 @@ use super::expression::{Symbols, evaluate};
 use super::source::is_name;
 use std::borrow::Cow;
 
-/// An open `.if`.
+/// A `.if` directive whose `.endif` was not read yet.
 struct Open {
     /// Line number of the `.if`.
     line: usize,
     /// True if the lines around this `.if` are selected.
     outer: bool,
-    /// True while the current branch is selected.
+    /// True while lines of the current branch are assembled.
     selected: bool,
-    /// True once a branch was selected; later branches are then excluded.
+    /// True once a branch of this `.if` was selected. Later branches of the `.if` are then excluded.
     done: bool,
-    /// True after `.else`.
+    /// True after the `.else` of this `.if`.
     ended: bool,
 }
 
 impl Open {
-    /// Begins the next branch, whose condition is true if `holds`.
+    /// Begins the next branch of the `.if`. `holds` is the value of the branch's condition.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;
     }
 }
 
-/// Replaces the lines that conditions exclude, and the conditions, by empty lines. Line numbers stay the same.
+/// Replaces two kinds of lines by empty lines: lines that a condition excludes, and lines with conditions. Line numbers
+/// stay the same.
 ///
 /// # Errors
 /// Returns the line number and the reason.

@@ -64,7 +64,7 @@ impl File {
     }
 
     /// Finds `count` consecutive free registers and returns the first of them. For one or two registers, the function
-    /// prefers a gap beside used registers. The register `but` is not used.
+    /// prefers a gap beside used registers. The result never contains register `but`.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -114,8 +114,8 @@ struct Placer<'a> {
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
     multiplier_free: u32,
-    /// First register and register count of the floating-point result of the previous clock. Freeze row 9 needs these
-    /// registers.
+    /// First register and register count of the floating-point result of the previous clock. Row 9 of the freeze table
+    /// delays a multiplication whose first source is this result.
     last_result: Option<(u8, usize)>,
     last_result_at: u32,
     last_store: Option<u32>,
@@ -242,8 +242,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if a push into the pipe is possible. The value that leaves the pipe needs free registers other than
-    /// `but`.
+    /// Returns true if a push into the pipe is possible. A push is possible if the value that leaves the pipe finds
+    /// free registers other than `but`.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -255,8 +255,9 @@ impl<'a> Placer<'a> {
         self.operations[value].name.result.unwrap_or(Width::Integer)
     }
 
-    /// Returns true if both sources are the result of the previous operation. Freeze row 9 would then delay the
-    /// multiplication. If only one source is this result, the two operands are swapped instead.
+    /// Returns true if both sources of a multiplication are the result of the previous operation. Row 9 of the freeze
+    /// table would then delay the multiplication. If only one source is this result, the scheduler swaps the two
+    /// operands instead.
     fn waits_for_first_source(&self, n: usize) -> bool {
         let sources = &self.operations[n].sources;
         self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
@@ -323,7 +324,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, if this pipe can be pushed. The
-    /// number is the urgency in clocks.
+    /// number is the urgency of this value in clocks.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -460,7 +461,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, first_source)
     }
 
-    /// Moves a value from a pipe to registers. Returns the assembler text of the destination register.
+    /// Moves a value from a pipe to registers other than `but`. Returns the assembler text of the destination register.
     fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
         self.last_result = None;
         let Some(value) = value else { return "f0".to_owned() };
@@ -556,7 +557,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Records the issue of an operation and frees the registers whose last reader is this operation. The registers are
-    /// free from the next clock on, or one clock later after a store (freeze row 24).
+    /// free from the next clock on. After a store they are free one clock later (row 24 of the freeze table).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
