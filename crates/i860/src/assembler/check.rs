@@ -88,7 +88,7 @@ impl PipeFill {
     }
 }
 
-/// Effects of an instruction on the pipe of the adder (first elements) and on the pipe of the multiplier (second elements).
+/// Effects of an instruction on the pipes: first elements for the adder's pipe, second elements for the multiplier's.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
