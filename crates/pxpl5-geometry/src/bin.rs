@@ -89,7 +89,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the rows of the picture whose frame lines are in a given range.
+    /// Returns the rows of the picture whose frame lines are in a given range. A field has only every second line of
+    /// its frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -109,7 +110,7 @@ impl Binner {
         self.cells(x, y, |_, _| true)
     }
 
-    /// Returns the regions that a triangle touches, as defined in the module documentation.
+    /// Returns the regions that a triangle touches, as defined in the documentation of this module.
     #[inline(always)]
     pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
         let [low_x, high_x] = extent(&outline.x);

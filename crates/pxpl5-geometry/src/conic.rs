@@ -1,4 +1,4 @@
-//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed point.
+//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed-point format.
 
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
@@ -10,10 +10,10 @@ const VALUE_BITS: i32 = 46;
 /// Largest number of bits of a square root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits of a silhouette expression that the root can ignore.
+/// Largest number of low bits of a silhouette expression that the square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root in bits. The root is shifted before its subtraction from a depth.
+/// Largest left shift of a square root in bits. The root is shifted before its subtraction from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`. The offset (dx, dy) is in pixels from

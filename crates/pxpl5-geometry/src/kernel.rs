@@ -109,7 +109,7 @@ pub struct Kernel {
     pub both_eyes: bool,
 }
 
-/// First words of the instructions in a triangle's command, in the order of the kernel's parameter block.
+/// First words of the instructions in a triangle's renderer command, in the order of the kernel's parameter block.
 ///
 /// The order is: enable, edge, depth compare, depth load, three components, colour (Phong only).
 pub type Heads = [Word; 8];
@@ -143,10 +143,11 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
-/// Files of compiled code. The functions for the surface come first.
+/// Source files of the kernel code in the style of a compiler's output. The functions that compute surface values come
+/// first.
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
-/// Files of dual-instruction code.
+/// Source files of the kernel code in dual-instruction mode.
 const DUAL: [&str; 7] = [
     include_str!("../kernels/dual.s"),
     VERTICES,
@@ -157,8 +158,8 @@ const DUAL: [&str; 7] = [
     include_str!("../kernels/dual_end.s"),
 ];
 
-/// Files of the second pass of each batch through the first loop, for kernels that serve both eyes. The colours of the
-/// first pass stay.
+/// Source files for the right eye, for kernels that serve both eyes. With this code, each batch passes the first loop a
+/// second time. The colours of the first pass stay.
 const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
 
 /// Returns a source that defines constants, each 1 if its condition is true and 0 otherwise.
@@ -293,8 +294,9 @@ impl Kernel {
         words.0
     }
 
-    /// Returns two pairs of numbers, for the front and the back of a triangle. The first number is the scale from
-    /// surface values to plane values. The second number is half a unit minus the bias.
+    /// Returns the scale and the offset that convert a surface value to a plane value, for the front and for the back
+    /// of a triangle. The offset adds half a unit for rounding, and removes the constant [`ROUND_SINGLE`] that an
+    /// earlier step has added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -378,8 +380,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns a mask for XOR and a mask for AND. After both operations, the high word of the area is negative if the
-/// triangle is culled.
+/// Returns a mask for XOR and a mask for AND, with which the kernel selects triangles to leave out. After both
+/// operations, the high word of the area is negative if the triangle is not drawn.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {

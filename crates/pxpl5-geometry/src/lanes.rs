@@ -84,7 +84,7 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// Values at the corners of the triangles. First index is the corner, second index is the triangle.
+/// Values at the corners of several triangles. First index is the corner, second index is the triangle.
 struct CornerValues {
     /// Distance from the picture's left border in 1/16 px.
     x: [EachLane<i32>; 3],
@@ -299,8 +299,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns one component at the three corners, plus `half` for rounding. The component is negated for triangles that
-/// face away.
+/// Returns one component of the normals at the three corners, plus `half` for rounding. The component is negated for
+/// triangles that face away from the eye.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]

@@ -108,14 +108,15 @@ pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: 
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
 }
 
-/// Returns a normal in eye coordinates, and the degree to which it faces the eye (negative if it faces away).
+/// Returns a normal in eye coordinates, and a number for its direction: positive if the normal faces the eye, negative
+/// if it faces away.
 #[inline(always)]
 pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
     let n = unit_normal(normal);
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners. If they face away from the eye on average, all three are negated.
+/// Returns the normals of three corners. If the normals face away from the eye on average, all three are negated.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

@@ -4,7 +4,7 @@ use crate::regions::RegionMask;
 use crate::stats::SetupStats;
 use pxpl5_wire::RegionId;
 
-/// The result of binning one triangle.
+/// The regions that one triangle touches, or the reason why the triangle is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
     /// The triangle needs clipping. [`crate::Transform::bin`] clips the triangle and finds its regions.

@@ -38,7 +38,7 @@ pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// Projection of spheres. `None` if the view's projection is unsuitable for spheres.
+    /// Projection of spheres. `None` if the view's projection cannot show spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
@@ -78,8 +78,8 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Returns the corners interpolated between the two views, in whole subpixels. `s` is 0 in the first view and 1 in
-    /// the second.
+    /// Returns the corners of the triangle, interpolated between the two views, in whole subpixels. `s` is 0 in the
+    /// first view and 1 in the second.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -155,7 +155,7 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle, and the relation of its corner order to the input order.
+/// Outline of a screen triangle, and the relation between the outline's order of corners and the order of the input.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
     /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.
@@ -344,8 +344,8 @@ impl Transform {
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
-    /// Sets up a triangle at a position between two views, with the light of this view. `s` is 0 in the first view and
-    /// 1 in the second.
+    /// Sets up a triangle whose corners are interpolated between two views, with the light of this view. `s` is 0 in
+    /// the first view and 1 in the second.
     pub fn gouraud_between(
         &self,
         ends: &TriangleEnds,
@@ -363,8 +363,8 @@ impl Transform {
         }
     }
 
-    /// Calls `sink` with the outline of a triangle at a position between two views, like [`Self::gouraud_between`], but
-    /// without colours.
+    /// Calls `sink` with the outline of a triangle whose corners are interpolated between two views. The outline equals
+    /// the outline of [`Self::gouraud_between`]; no colours are computed.
     pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -383,8 +383,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Returns the binning result of a triangle whose corners are inside the guard band. `whole` is `None` for a
-    /// triangle without area.
+    /// Returns the regions that a triangle touches, or the reason why the triangle is not drawn. The corners must be
+    /// inside the guard band. `whole` is `None` for a triangle without area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };

@@ -74,8 +74,8 @@ impl Cpu {
         self.busy
     }
 
-    /// Returns the CPU time that all programs together have spent up to `now`. `now` must not be earlier than the last
-    /// call of [`Cpu::settle`].
+    /// Returns the CPU time that all programs of the board together have spent up to `now`. `now` must not be earlier
+    /// than the last call of [`Cpu::settle`].
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let Some((priority, since)) = self.running else { return self.busy };
         let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);

@@ -63,8 +63,8 @@ pub struct Mark {
     pub time: Time,
     /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture that the stage makes. If a host sends views independently of pictures, the field has the
-    /// number of the transmission.
+    /// Number of the picture that the stage makes. For a host that sends views independently of pictures, the number
+    /// counts the host's transmissions.
     pub picture: PictureNumber,
     /// Surface for which the stage draws, if the stage draws one eye at a time.
     pub surface: Option<SurfaceId>,

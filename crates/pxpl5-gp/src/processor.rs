@@ -80,12 +80,12 @@ pub enum ProcessorFault {
         /// Number of words in the requested access.
         words: usize,
     },
-    /// The memory is too small for the outputs of both bin contexts.
+    /// The memory is too small for the outputs of both bin contexts (the two sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
         gp: NodeId,
-        /// Bin context, 0 or 1, that requested memory.
+        /// Number (0 or 1) of the bin context that requested memory. A bin context is one of two sets of bins.
         context: u8,
         /// Number of bytes that the context requested.
         needed_bytes: u32,
@@ -106,7 +106,7 @@ pub enum ProcessorFault {
 /// Return address of every call. Memory has no code at this address, and a run stops when it reaches the address.
 const RETURN: u32 = 0x0800;
 
-/// Returns the range of memory addresses that a program occupies.
+/// Returns the range of memory addresses that an assembled program occupies.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
@@ -162,7 +162,7 @@ pub struct Processor {
     shelf: Rc<RefCell<DecodedPrograms>>,
     /// All programs that were ever loaded, in the order of their first calls.
     programs: Vec<Arc<Program>>,
-    /// Address range of the output of each bin context.
+    /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
     /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
@@ -285,9 +285,9 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Reserves memory for the output of bin context 0 or 1 and returns the address. An earlier reservation of the same
-    /// context ends. Context 0 begins after the program's data, at address `end_of_data` or above. Context 1 lies at
-    /// the end of memory.
+    /// Reserves memory for the output of bin context 0 or 1 (one of two sets of bins) and returns the address. An
+    /// earlier reservation of the same context ends. Context 0 begins after the program's data, at address
+    /// `end_of_data` or above. Context 1 lies at the end of memory.
     ///
     /// # Errors
     ///
@@ -317,8 +317,8 @@ impl Processor {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry`. Before the call, some registers are set. Returns the time from the call to
-    /// the return.
+    /// Calls a program at its label `entry`. Before the call, the function writes the values of `registers` to integer
+    /// registers. Returns the time from the call to the return.
     ///
     /// If memory holds another program, this program is loaded first. Loading takes no simulated time.
     ///

@@ -61,16 +61,16 @@ const DONE: u32 = WINDOW + 12;
 /// Number of kinds of messages that a header can state: words for a program, commands, and pixels.
 const KINDS: u32 = 3;
 
-/// Flag of a send request: the receiver's port stays reserved for the next message.
+/// Flag of a request to send a message: the receiver's port stays reserved for the next message.
 const HOLD: Word = 1;
 
-/// Instruction budget of a call. A message needs only a small part of the budget.
+/// Instruction budget of a call of the message software. A message needs only a small part of the budget.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the software that receives a message, and returns the time of this software. The software has four parts:
-    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message and releases its
-    /// buffer.
+    /// Runs the i860 code that receives a message, and returns the time of this code. The code has four parts:
+    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message from the queue and
+    /// releases the message's buffer.
     ///
     /// # Errors
     ///
@@ -181,8 +181,8 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Initializes queues, descriptors and the table of handlers in memory. If memory already holds them, the function
-/// changes nothing.
+/// Initializes the queues, the descriptors and the table of handlers in memory. If memory already holds these data, the
+/// function changes nothing.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());

@@ -44,8 +44,8 @@ impl Clock {
         }
     }
 
-    /// Returns the time of edge `n` with 128-bit arithmetic, which needs several times as much host time as 64-bit
-    /// arithmetic.
+    /// Returns the time of edge `n` with 128-bit arithmetic. Callers use it only for long times, because it needs
+    /// several times as much host time as 64-bit arithmetic.
     const fn edge_of_long(&self, n: u64) -> Time {
         let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
         if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }

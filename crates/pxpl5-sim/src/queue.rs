@@ -33,8 +33,8 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Greatest length of the sorted list of early events. Insertion into a longer list would be slower than insertion into
-/// the heap.
+/// Greatest length of the sorted list of the earliest events. Insertion into a longer list would be slower than
+/// insertion into the heap.
 const NEAR: usize = 16;
 
 /// Returns the sort key that separates the phases `Work` and `Observe` at `now`. The key is greater than the keys of
@@ -196,7 +196,7 @@ impl<E> EventQueue<E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// Returns the time of the next event, or `None` if no event is waiting.
+    /// Returns the time of the next event, or `None` if the queue is empty.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {

@@ -36,7 +36,7 @@ pub struct ParameterInfo {
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
-    /// Smallest and largest value that the model can use.
+    /// Smallest and largest value with which the model works.
     pub limits: (Value, Value),
     /// Source of the value: a paper's short name, a formula or a reason.
     pub source: &'static str,
