@@ -392,8 +392,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the work before the triangles of a pass. The labels of the source are `edit`, `reset` and
-/// `place` (kernels/place.s).
+/// Returns the source of the code that runs before the triangles of a pass over the display list. The labels of the
+/// source are `edit`, `reset` and `place` (kernels/place.s).
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].

@@ -134,9 +134,9 @@ fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> Li
 #[derive(Clone, Debug)]
 struct Expressions {
     edges: [LinearLanes; 3],
-    /// Expressions of depth and of three components of colour or normal, in this order.
+    /// Linear expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were too steep and were replaced by flat planes.
+    /// For each triangle, the number of planes that were too steep and were replaced by planes with a constant value.
     flattened: EachLane<u8>,
 }
 
@@ -408,8 +408,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns the plane through three corner values of each triangle, over the frame's pixels. Counts the planes that
-    /// were replaced by flat planes.
+    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes that are
+    /// too steep are replaced by planes with a constant value, and counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();

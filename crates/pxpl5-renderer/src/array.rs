@@ -55,8 +55,8 @@ pub trait PixelArray {
     /// Overwrites the Enable register: one bit for each pixel, which allows writes to the pixel's memory.
     fn set_enable(&mut self, plane: &Plane);
 
-    /// Returns the colours of the upper left `width` x `height` pixels (at most 128 x 128) of the selected context, the
-    /// part of pixel memory that holds one region. The colours have the format 0x00RRGGBB and are ordered row by row.
+    /// Returns the colours of the upper left `width` x `height` pixels (at most 128 x 128), in the format 0x00RRGGBB
+    /// and row by row. The colours come from the selected context, the part of pixel memory that holds one region.
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
     /// Sets pixel memory, the Enable register, the backing store, the selected region and the count of faults to zero.

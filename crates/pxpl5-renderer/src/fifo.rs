@@ -282,8 +282,8 @@ impl InputFifo {
         self.watched.get_or_insert_default();
     }
 
-    /// Returns the numbers of words that have entered and left by `now`, or `None` if the FIFO is not watched. `now`
-    /// must not be before the last event.
+    /// Returns the numbers of words that have entered and left the FIFO by `now`. Returns `None` if these numbers are
+    /// not recorded. `now` must not be before the last event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })

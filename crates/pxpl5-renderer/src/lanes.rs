@@ -40,8 +40,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Columns of pixel memory for the most recently used context (region in pixel memory). `None` if no context was
-    /// used.
+    /// Indices of the columns (arrays of words) for the most recently used context, which is a region in pixel memory.
+    /// `None` if no context was used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,

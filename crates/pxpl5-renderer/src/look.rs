@@ -9,7 +9,8 @@ use std::collections::VecDeque;
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
-    /// Number of words in the input FIFO. Only words of complete commands count. `None` if the FIFO is not watched.
+    /// Number of words in the input FIFO. Only words of complete commands count. `None` unless
+    /// [`Renderer::watch_fifo`](crate::Renderer::watch_fifo) was called.
     pub fifo_words: Option<u32>,
     /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
@@ -20,8 +21,8 @@ pub struct RendererSnapshot {
     /// True while the controller executes commands other than copies.
     pub executing: bool,
     /// Region for which the commands that started last draw. The value becomes `None` when the region's copy command
-    /// starts. The value is also `None` if the FIFO is not watched, or if the sender of the commands does not state the
-    /// region.
+    /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
+    /// of the commands does not state the region.
     pub drawing: Option<RegionPlace>,
     /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,

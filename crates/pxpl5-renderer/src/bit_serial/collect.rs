@@ -10,8 +10,8 @@ use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
-    /// Executes the run that begins at word `position`, and returns its length in words. Returns 0 if no run begins at
-    /// this word.
+    /// Executes the run of instructions that begins at word `position`, and returns its length in words. Returns 0 if
+    /// no run begins at this word.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
         let mut run = std::mem::take(&mut self.run);
         run.clear();

@@ -1,4 +1,4 @@
-//! Effects of an expression's bits on the pixels of a tile. The bits take effect one by one, as they arrive.
+//! Effects of an expression's bits on the pixels of a tile. Each bit takes effect when it arrives.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -169,8 +169,8 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// Runs one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not (not a +
-/// b).
+/// Simulates one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not
+/// (not a + b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

@@ -1,13 +1,13 @@
-//! Expression evaluator: trees of serial adders. In each clock, they deliver one bit of an expression's value to every
-//! pixel.
+//! Expression evaluator: trees of serial adders. In each clock, the trees deliver one bit of an expression's value to
+//! every pixel.
 //!
 //! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
 //! tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves whose index has bit
 //! `l` set. Coefficients enter with the least significant bit first.
 //!
 //! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
-//! expression, wider trees multiply by the squares of the indices. Each row also gets its own coefficient of x, and
-//! each pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
+//! expression, wider trees multiply by the squares of the indices. Each row also has its own coefficient of x, and each
+//! pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
 //!
 //! No data flows from the pixels back to the trees. The simulator therefore first computes all clocks of the trees.
 //! Then it computes all clocks of each vector of pixels, with the carries in registers. In vectors for trees, a lane
@@ -194,10 +194,11 @@ pub(super) trait Evaluator {
 
 /// An evaluator whose trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// Coefficients of a linear or quadratic expression. The trees multiply them by the indices of columns and rows.
+    /// Coefficients of a linear or quadratic expression. The adder trees multiply the coefficients by the indices of
+    /// columns and rows.
     type Coefficients;
 
-    /// Runs the trees for the first `bits` bits of the expression.
+    /// Simulates the adder trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
@@ -302,7 +303,7 @@ impl Evaluator for QuadraticStreams {
     }
 }
 
-/// Runs one clock of a serial adder in each pixel of a vector.
+/// Simulates one clock of a serial adder in each pixel of a vector.
 #[inline(always)]
 pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
     let half = a.xor(b);

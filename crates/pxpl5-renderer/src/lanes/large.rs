@@ -12,7 +12,7 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns of pixel memory and bit shifts with which a sphere is drawn in this layout.
+/// Columns (arrays of words) and bit shifts with which a sphere is drawn in this layout.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -45,9 +45,9 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns for a sphere, or `None` if depth and radicand have different widths.
+    /// Returns the columns (arrays of words) for a sphere, or `None` if depth and radicand have different widths.
     ///
-    /// With different widths, the program would leave a mixture of depth and radicand in the scratch.
+    /// With different widths, the program would leave a mixture of depth and radicand in the scratch memory.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;

@@ -33,8 +33,8 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns that hold the fields of the selected context (region in pixel memory). The result is cached
-    /// until another context is selected.
+    /// Returns the columns (arrays of words) that hold the fields of the selected context, which is a region in pixel
+    /// memory. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -53,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns that hold x, y and z of the normals of the selected context (region in pixel memory).
-    /// Returns `None` if the layout has no normals.
+    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context, which is a
+    /// region in pixel memory. Returns `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -62,7 +62,8 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the index of the column that holds exactly this field, or `None` if no column holds exactly this field.
+    /// Returns the index of the column (array of words) that holds exactly this field, or `None` if no column holds
+    /// exactly this field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
