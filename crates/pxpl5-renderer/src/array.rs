@@ -113,9 +113,9 @@ pub enum FaultKind {
     /// An operand overlaps the destination, and the instruction does not allow this overlap.
     #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
-        /// First bit of the destination.
+        /// First bit, in pixel memory, of the field that receives the result.
         destination: u8,
-        /// First bit of the operand.
+        /// First bit, in pixel memory, of the operand's field.
         operand: u8,
     },
 }

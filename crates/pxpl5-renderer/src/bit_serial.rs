@@ -169,7 +169,7 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the values of a field in the upper left `width` x `height` pixels, row by row.
+    /// Returns the values of the field `field` in the upper left `width` x `height` pixels, row by row.
     fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         let size = REGION_SIZE as usize;
         let mut values = vec![0; size * size];

@@ -26,7 +26,7 @@ pub enum RendererEvent {
         /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
-    /// The controller starts the next copy command.
+    /// The controller starts the next copy command, which copies a region to a frame buffer.
     CopyBegins,
     /// The colours of the region that the renderer copies are now complete in the backing store.
     Stored,
@@ -82,7 +82,7 @@ pub struct Renderer {
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// Copy whose region is being sent to a frame buffer. `None` if no region is being sent.
+    /// Copy command whose region is being sent to a frame buffer. `None` if no region is being sent.
     copying: Option<CopyOrder>,
     /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first of these
     /// regions to the backing store can be in progress.
@@ -101,9 +101,9 @@ pub struct Renderer {
 /// A region that a renderer has drawn, with the times of the region's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Display, buffer and place for which the region is drawn.
+    /// Frame buffer and place for which the region is drawn.
     pub target: CopyTarget,
-    /// Number of words that transfer the region's pixels to the frame buffer.
+    /// Number of words of the message that transfers the region's pixels to the frame buffer.
     pub words: u32,
     /// Time at which the controller finished its work on the previous region.
     pub begun_at: Time,
@@ -391,7 +391,7 @@ impl Renderer {
         self.stats
     }
 
-    /// Returns the time spent executing commands so far, without copies.
+    /// Returns the time that the board has spent so far to execute commands, without copies.
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()

@@ -137,7 +137,7 @@ impl CommandKind {
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout, from `ContextPlan::name`.
+    /// Name of the layout that lacks the field, from `ContextPlan::name`.
     pub layout: &'static str,
     /// The missing field, or the required number of scratch bits, as text.
     pub missing: &'static str,
@@ -248,7 +248,7 @@ impl Command {
         }
     }
 
-    /// Returns a command of this kind whose operands are zero.
+    /// Returns a command of this kind in which all operands are zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),

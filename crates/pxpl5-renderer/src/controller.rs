@@ -75,7 +75,7 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Returns the same linear expression with the array's upper left pixel as origin.
+    /// Returns the same linear expression with another origin: the array's upper left pixel instead of the picture's.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
@@ -93,7 +93,7 @@ impl Controller {
         self.quadratic = quadratic;
     }
 
-    /// Returns the stored quadratic expression with the array's upper left pixel as origin.
+    /// Returns the stored quadratic expression, with the array's upper left pixel as origin.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let x = i64::from(self.left);

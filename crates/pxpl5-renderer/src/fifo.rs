@@ -15,12 +15,12 @@
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
 
-/// Consecutive commands of equal length and execution time.
+/// Consecutive commands with an equal number of words and equal execution time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
-    /// Execution time of one command. `None` for blocking commands.
+    /// Execution time of one command. `None` for blocking commands, which end when a copy ends.
     pub(crate) span_each: Option<Span>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct CommandBatch {
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
     pub(crate) accepted: Option<Time>,
-    /// Time at which a blocking command starts.
+    /// Time at which a blocking command (the copy of a region) starts.
     pub(crate) blocks: Option<Time>,
 }
 
@@ -67,7 +67,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns the same sequence without its first `commands` commands.
+    /// Returns this sequence of commands without its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -121,7 +121,7 @@ impl StartTimes {
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Commands of the arriving message whose arrival times are not known yet.
+    /// Commands of the arriving message, until the arrival times of these commands are known.
     in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
@@ -129,7 +129,7 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller is free. `None` while a blocking command runs.
+    /// Time from which the controller is free. `None` while a blocking command (the copy of a region) runs.
     free_at: Option<Time>,
     busy: Span,
     /// Total time for which blocking commands (copies of regions) have occupied the controller.
@@ -146,7 +146,7 @@ pub(crate) struct InputFifo {
 /// wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
-/// Times of the last blocking command and of the commands before it.
+/// Times of the last blocking command (copy of a region) and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
     /// End time of the previous blocking command. From this time on, the controller could execute the commands between
@@ -155,7 +155,7 @@ pub(crate) struct Block {
     /// End time of the last command before this blocking command. If the controller waited for the selection of the
     /// region to copy, the selection does not count.
     pub(crate) finished_at: Time,
-    /// Start time of the blocking command.
+    /// Start time of this blocking command.
     pub(crate) start: Time,
     /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
@@ -178,7 +178,7 @@ struct Watched {
 /// A growing number of words as a function of simulated time. The record begins at the last call of `discard_before`.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the number of words grows, in ascending order, each with the new number.
+    /// Times at which the number of words grows, in ascending order. Each time has the new number of words.
     steps: VecDeque<(Time, u64)>,
     /// The number of words before the first entry of `steps`.
     before: u64,
@@ -233,7 +233,7 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands, in order, to the message that the next call of [`Self::message`] announces.
+    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in order.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
@@ -247,7 +247,7 @@ impl InputFifo {
         self.advance()
     }
 
-    /// Ends the running blocking command at time `now`.
+    /// Ends the running blocking command (the copy of a region) at time `now`.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.blocked += now.since(self.last_block.start);
@@ -273,7 +273,8 @@ impl InputFifo {
         self.blocked + Span(goes_on.unwrap_or(0))
     }
 
-    /// Returns the last blocking command. Its times are valid once it has started.
+    /// Returns the last blocking command (copy of a region). The times of the result are valid once this command has
+    /// started.
     pub(crate) const fn last_block(&self) -> Block {
         self.last_block
     }
@@ -302,12 +303,12 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true while a non-blocking command runs, according to the commands received so far.
+    /// Returns true while a non-blocking command runs. The function uses only the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
 
-    /// Returns true while a blocking command runs.
+    /// Returns true while a blocking command (the copy of a region) runs.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()
     }

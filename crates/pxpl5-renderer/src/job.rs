@@ -86,7 +86,7 @@ impl ArrayPool {
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first list overwrites the whole content of the array.
+    /// True if the first command list overwrites the whole content of the array.
     pub(crate) cleared: bool,
     /// True if two optimizations are on. The first leaves out commands that touch no pixel, and the second caches
     /// regions without primitives.
@@ -114,7 +114,8 @@ impl PixelJob {
         })
     }
 
-    /// Returns the cache key of a region whose commands are `words`. None of these commands draws a primitive.
+    /// Returns the cache key of a region whose commands are `words`. The caller must ensure that none of these commands
+    /// draws a primitive.
     ///
     /// Returns `None` if some words are not a command, or if depths are copied too.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
@@ -137,7 +138,7 @@ impl PixelJob {
         [width, height]
     }
 
-    /// Executes `words` and then the remaining lists, and returns the region's pixels.
+    /// Executes `words`, then the command lists in `lists`, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
         // If the context was not cleared, pixels without drawing are black.
         if !self.cleared {

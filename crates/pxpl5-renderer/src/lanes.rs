@@ -121,7 +121,7 @@ impl Lanes {
 /// State of the array while it draws a command list.
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Collected words that have not been executed yet.
+    /// Words of commands that were collected, but not executed yet.
     words: &'a mut Vec<Word>,
     /// Regions copied so far. After a fault, this field holds the fault, and no more commands are drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,

@@ -14,18 +14,18 @@ use std::ops::RangeInclusive;
 pub struct ContextPlan {
     /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Number of contexts: regions that share the array.
+    /// Number of contexts. Each context holds one region in pixel memory.
     pub contexts: u8,
     /// Bits of pixel memory that each context (region in the array) takes.
     pub context_bits: u8,
-    /// Field of the colour: 24 bits, 0xRRGGBB.
+    /// Field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Field of the depth, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
     /// Field of the normal: x, y and z in this order, 12 bits each, two's complement. `None` if the layout does not
     /// support Phong shading.
     pub normal: Option<Operand>,
-    /// Field for temporary values of spheres and shading.
+    /// Field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
@@ -165,8 +165,8 @@ impl Layout {
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch has only 30 to 35 bits. Returns
-    /// `None` if the scratch is smaller.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch field has only 30 to 35 bits.
+    /// Returns `None` if the scratch field is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -176,7 +176,7 @@ impl Layout {
         }
     }
 
-    /// Returns the bit ranges of all fields, in the order of the plan.
+    /// Returns the bit ranges of all fields, in the order of the fields in [`ContextPlan`].
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
@@ -190,7 +190,7 @@ pub struct FieldRange {
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Length in bits.
+    /// Length of the range in bits.
     pub width: u32,
 }
 

@@ -24,7 +24,7 @@ pub struct RendererSnapshot {
     /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
     /// of the commands does not state the region.
     pub drawing: Option<RegionPlace>,
-    /// Number of regions that are in the backing store or wait to be moved into it.
+    /// Number of regions that are in the backing store or wait for their transfer to the backing store.
     pub stored_regions: usize,
     /// Time spent executing commands since the start of the run, without copies. A received command counts immediately,
     /// even before its execution.
@@ -83,7 +83,7 @@ impl SentLists {
         if is_copied { None } else { last.content.place() }
     }
 
-    /// Removes the lists whose pixels are erased because a later clear has started.
+    /// Removes the command lists whose pixels are erased because a later clear command has started.
     fn forget(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);

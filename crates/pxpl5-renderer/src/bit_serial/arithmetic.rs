@@ -88,7 +88,7 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Stores one bit plane of a field in the enabled pixels.
+    /// Overwrites bit plane `bit` of pixel memory in the enabled pixels of the tile.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }

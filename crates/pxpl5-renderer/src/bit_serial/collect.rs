@@ -1,4 +1,5 @@
-//! Collection of consecutive instructions of a list into a run, and execution of the run.
+//! Collection of consecutive instructions of a list into a run, and execution of the run. A tile executes the whole run
+//! before the next tile begins.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};

@@ -26,7 +26,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation on the bits of an expression. A destination is given by its first bit in pixel memory.
+/// The operation of the pixels with the bits of an expression. A destination field is given by its first bit in pixel
+/// memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -37,7 +38,8 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression, bit by bit, for one vector of pixels, and applies the effect.
+    /// Evaluates an expression, bit by bit, for one vector of pixels, and performs the operation of this delivery with
+    /// each bit.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -80,7 +82,7 @@ impl Delivery {
     }
 }
 
-/// Overwrites one bit plane in the enabled pixels of a vector.
+/// Overwrites the bits of the enabled pixels of a vector in one bit plane.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -99,7 +101,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A sink that stores the bits from bit `shift` on in a field.
+/// A sink that stores the bits of an expression in a field. The low `shift` bits of the expression are left out.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -112,7 +114,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A sink that adds the bits from bit `shift` on to a field.
+/// A sink that adds the bits of an expression to a field. The low `shift` bits of the expression are left out.
 struct AddBits {
     first: usize,
     shift: usize,

@@ -18,17 +18,17 @@ use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Number of bits of a column's index (0 to 127).
+/// Number of bits of the index (0 to 127) of a pixel column.
 const NUMBER_BITS: usize = 7;
-/// Number of bits of the square of a column's index.
+/// Number of bits of the square of a pixel column's index (0 to 127).
 const SQUARE_BITS: usize = 14;
 
 /// A set of leaves of an adder tree, with one bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// For each bit `l`, the columns (or rows) whose index has this bit set.
+/// For each bit `l`, the columns (or rows) of pixels whose index has this bit set.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// For each bit `l`, the columns (or rows) whose squared index has this bit set.
+/// For each bit `l`, the columns (or rows) of pixels whose squared index has this bit set.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -56,9 +56,9 @@ type Streams = [u64; 8];
 pub(super) struct Trees<V, const LEVELS: usize> {
     /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
-    /// For each level `l`, the leaves whose index has bit `l` set.
+    /// For each level `l` of a tree, the leaves whose index has bit `l` set.
     leaves: [V; LEVELS],
-    /// Delayed bits of the coefficients: level `l` uses the bit that entered `l` clocks ago.
+    /// Delayed bits of the coefficients. Level `l` of a tree uses the bit that entered `l` clocks ago.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -117,7 +117,7 @@ fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// Returns the lanes of a vector as words, followed by zeros.
+/// Returns the lanes of a vector as 64-bit words, followed by zeros.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
@@ -182,17 +182,17 @@ impl StreamStart {
 
 /// Serial adders in the pixels. They combine the bit streams of the trees into the bits of an expression.
 pub(super) trait Evaluator {
-    /// State of the adders of one vector of pixels between two clocks.
+    /// State of the serial adders of one vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
-    /// Returns the carries before the first bit, which are zero.
+    /// Returns the carries of the adders before the first bit, which are zero.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
     /// Returns bit `t` of the expression for a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
     fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut Self::Carries<V>) -> V;
 }
 
-/// An evaluator whose trees span the whole array.
+/// An evaluator whose adder trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
     /// Coefficients of a linear or quadratic expression. The adder trees multiply the coefficients by the indices of
     /// columns and rows.
@@ -205,13 +205,13 @@ pub(super) trait WholeTrees: Evaluator {
 /// Output bits of the column tree and the row tree for a linear expression, one entry for each clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// Tree outputs of a quadratic expression, one entry for each clock.
+/// Outputs of the adder trees for a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// Outputs of the trees of a quadratic expression in one clock.
+/// Outputs of the adder trees for a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// The sum `xx x^2` for each column x, and the sum `one + y y + yy y^2` for each row y.
+    /// Bits of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
     sums: Streams,
     /// The coefficient of x in each row: `x + xy y`. The coefficient is in the same lanes as the row's bits in `sums`.
     coefficients: Streams,

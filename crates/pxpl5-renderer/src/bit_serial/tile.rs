@@ -11,7 +11,7 @@ pub(super) const WIDTH: usize = 32;
 pub(super) const HEIGHT: usize = 16;
 /// Number of tiles side by side in the array.
 pub(super) const ACROSS: usize = REGION_SIZE as usize / WIDTH;
-/// Number of tiles in the array.
+/// Number of tiles into which the array is divided.
 pub(super) const TILES: usize = PIXELS / (WIDTH * HEIGHT);
 
 /// One bit of every pixel of a tile. The bit of pixel (x, y) is bit `x + 32 (y % 2)` of word `y / 2`.
@@ -49,13 +49,13 @@ impl Tile {
     }
 }
 
-/// Returns true if any bit of the words is set.
+/// Returns true if any bit of `words` is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
 }
 
-/// Returns the left column and the top row of a tile in the array.
+/// Returns the array's column at the left border of a tile, and the array's row at the top border.
 #[inline(always)]
 pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]

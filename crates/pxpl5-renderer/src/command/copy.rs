@@ -55,7 +55,7 @@ impl Clear {
     }
 }
 
-/// Copies the region's colour to a frame buffer.
+/// Copies the colours of a region to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
     /// Destination of the pixels: frame buffer, buffer, region and its grid, lines, and picture.

@@ -105,7 +105,7 @@ pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 #[derive(Clone, Debug)]
 pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 
-/// A fast encoder of Phong triangle commands, like [`TriangleEncoder`].
+/// A fast encoder of Phong triangle commands, which copies a blank command like [`TriangleEncoder`].
 #[derive(Clone, Debug)]
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 

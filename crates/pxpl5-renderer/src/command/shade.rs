@@ -47,7 +47,7 @@ const COSINE_BITS: u8 = 10;
 
 /// Number of bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// First bit of the square root, relative to the scratch memory.
+/// First bit of the field for the square root, relative to the start of the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
 /// Fields of pixel memory that the shading program uses.

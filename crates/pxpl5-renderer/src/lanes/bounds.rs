@@ -13,7 +13,7 @@ const LAST: i64 = 127;
 /// enough to add few pixels.
 const MARGIN: f64 = 1e-3;
 
-/// The pixels `left .. right` of the rows `top .. bottom`.
+/// A rectangle of pixels: columns `left .. right` of rows `top .. bottom`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Area {
     pub(super) left: usize,
@@ -50,7 +50,7 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// Returns the columns of [`LANES`] consecutive rows. The first row is `top`.
+    /// Returns the columns that the triangle can cover in [`LANES`] consecutive rows. The first row is `top`.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
@@ -343,7 +343,7 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// Uses integer corners and slopes, so that no row ends within the margin around a pixel.
+    /// The test uses integer corners and slopes, so that no row ends within the margin around a pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

@@ -1,5 +1,5 @@
-//! Fast execution of spheres and shading. Each of these commands draws many pixels. In comparison, the decoding of all
-//! its words takes little time.
+//! Fast execution of spheres and shading. Each of these commands draws many pixels, so the decoding of all its words
+//! takes only a small part of the time.
 
 use super::Lanes;
 use super::columns::ContextColumns;

@@ -106,7 +106,7 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
     }
 }
 
-/// Interpolated colour: the sum of a plane and a multiple of the root.
+/// Painter of interpolated colours. The colour is the sum of a plane and a multiple of the square root.
 pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
@@ -143,7 +143,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
     }
 }
 
-/// Interpolated normals from two planes and the root, and the object's colour.
+/// Painter of the object's colour and interpolated normals. Two planes give x and y of the normal, and the square root
+/// gives z.
 pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,

@@ -44,7 +44,7 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// Templates and clocks of all commands that are executed as a whole.
+/// Templates and clocks of all commands that the array executes as a whole instead of instruction by instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
@@ -55,7 +55,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// Numbers of instructions and clocks by which a command increases [`crate::Executed`].
+/// Numbers of instructions and clocks that a command adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,

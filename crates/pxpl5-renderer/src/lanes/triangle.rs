@@ -17,7 +17,7 @@ const WIDTH: usize = 128;
 /// A linear expression that can be evaluated for a vector of pixels at any place in the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
-    /// Values at the first pixels of the array's top row, one for each lane.
+    /// Values of the expression at the first pixels of the array's top row, one for each lane.
     begin: V,
     step: V,
     a: i32,
@@ -88,7 +88,7 @@ impl<const N: usize> Surface for &[Word; N] {
     }
 }
 
-/// The surface of triangle `i` of a batch.
+/// Depth, components and colour of triangle `i` of a batch.
 struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -341,7 +341,7 @@ fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask,
     S::store(new, mask, old, column, at);
 }
 
-/// Stores interpolated colours as 0x00RRGGBB.
+/// Painter that stores interpolated colours as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
@@ -360,7 +360,7 @@ impl PaintTriangle for PaintGouraud<'_> {
     }
 }
 
-/// Stores interpolated normals and the object's colour.
+/// Painter that stores interpolated normals and the object's colour.
 pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,

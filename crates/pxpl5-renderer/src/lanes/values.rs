@@ -59,7 +59,7 @@ pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
     if signed { (value as i64 >> by) as u64 } else { value >> by }
 }
 
-/// Sign-extends the low `width` bits to 64 bits if `signed` is true. Otherwise zero-extends them.
+/// Sign-extends the low `width` bits of `value` to 64 bits if `signed` is true. Otherwise zero-extends these bits.
 pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
     let unused = 64 - width;
     if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }
