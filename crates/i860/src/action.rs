@@ -15,7 +15,7 @@ pub(crate) struct CoreAction {
     /// Number of the first source register, or r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// Number of the register that receives the address of an access, or r0 without auto-increment.
+    /// Number of the register that receives the address of a load or store, or r0 without auto-increment.
     pub(crate) increments: u8,
     /// Immediate operand or address displacement, which is added to the first source register. The value is 0 if the
     /// instruction has neither.
@@ -184,7 +184,7 @@ impl Floating {
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Index of the instruction or pair in its block.
+    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
 }
 

@@ -12,7 +12,7 @@ pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u
     changes: u64,
 }
 
-/// Flag in the low bits of a tag: the way holds a line.
+/// Flag in the low bits of a tag: the way (place in a set) holds a cache line.
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
@@ -50,13 +50,13 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag of a line that is held and clean.
+    /// Returns the tag of a cache line that is held and clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Returns true if the array holds the line of an address.
+    /// Returns true if the array holds the cache line of an address.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))

@@ -30,7 +30,7 @@ pub(crate) struct Accesses {
 }
 
 impl Accesses {
-    /// Capacity in accesses. The number is a power of two that is greater than the length of a block.
+    /// Greatest number of accesses in the list. The number is a power of two and greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
@@ -144,7 +144,7 @@ impl Clock {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
     }
 
-    /// Counts the clocks of the part of a block that was executed.
+    /// Counts the clocks of the executed part of a block. Memoized clocks are reused if possible.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !(accesses.all_held && self.reuse_block_clocks(block, execution)) {
@@ -235,7 +235,7 @@ impl Clock {
         }
     }
 
-    /// Counts the freezes of a single instruction, then the clock of its issue.
+    /// Counts the clocks of all freezes of a single instruction, then the clock of the instruction's issue.
     #[inline]
     fn issue_single(&mut self, d: &Decoded) {
         if self.board.may_wait(d) {

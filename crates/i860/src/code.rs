@@ -18,7 +18,7 @@ fn place(pc: u32) -> usize {
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// True if decoded blocks were discarded because memory may have changed.
+    /// True if decoded blocks were discarded because the code in memory may have changed.
     changed: bool,
 }
 
@@ -55,7 +55,7 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Discards all decoded blocks, because memory may have changed.
+    /// Discards all decoded blocks, because the code in memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();

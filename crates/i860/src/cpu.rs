@@ -24,7 +24,7 @@ pub struct Cpu {
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Pairing mode to use after the delay slot. A return from a trap sets this mode.
+    /// Pairing mode (single instructions or pairs) to use after the delay slot. A return from a trap sets this mode.
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
@@ -32,7 +32,7 @@ pub struct Cpu {
     cause: Option<TrapCause>,
     /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
-    /// True if memory may have changed since its code was decoded.
+    /// True if memory may have changed since the code in memory was decoded.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,
@@ -104,7 +104,7 @@ impl Cpu {
         self.time.profile()
     }
 
-    /// Sets all counts of the profile to zero. Caches, queues and the clock are unchanged.
+    /// Sets all counts of the profile to zero. The caches, queues and the clock keep their state.
     pub fn clear_profile(&mut self) {
         self.time.clear_profile();
     }

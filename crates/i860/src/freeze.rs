@@ -8,7 +8,7 @@ use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 /// delay.
 #[derive(Clone, Copy, Debug)]
 pub struct FreezeRow {
-    /// Identifier of the row in code.
+    /// Name of the row in Rust code.
     pub id: Freeze,
     /// Number of the row in Intel's list of instruction timings, quoted from memory. A letter is added if one row of
     /// Intel's list has several delays.

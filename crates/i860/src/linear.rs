@@ -81,7 +81,7 @@ pub struct Slots {
     /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
     /// `core`.
     pub core: usize,
-    /// Number of pairs in the schedule.
+    /// Number of instruction pairs in the schedule.
     pub pairs: usize,
 }
 

@@ -132,7 +132,7 @@ impl Run {
         usize::from(self.0 as u8)
     }
 
-    /// Returns a hash of the key.
+    /// Returns a hash of the key, which gives the position in a hash table.
     #[inline]
     fn hash(self) -> usize {
         (self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize
@@ -183,7 +183,7 @@ pub(crate) struct RememberedClocks {
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Number of the cache line from which the run's last fetch came.
+    /// Number of the cache line from which the last fetch of the run came. A run is a part of a block.
     pub(crate) line: u32,
     /// Clocks of delay in the run (a part of a block), by cause.
     pub(crate) waited: WaitedClocks,

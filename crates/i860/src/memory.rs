@@ -165,8 +165,8 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The function does not check the alignment of the address, and the address need not have
-    /// memory.
+    /// Executes `flush`. The function does not check the alignment of the address. Memory need not exist at this
+    /// address.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

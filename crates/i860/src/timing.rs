@@ -145,11 +145,11 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Path prefix of the freeze costs, the first table that can be set.
+/// Prefix of the parameter names in the table of freeze delays.
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 
-/// Path prefix of the on-chip sizes. Lists of parameters show these sizes, but they cannot be set.
+/// Prefix of the names of on-chip sizes. Lists of parameters show these sizes, but users cannot set them.
 pub const CHIP_PATH: &str = "i860.chip";
 
 /// Configuration of a processor: timing rules, memory timing, and results of the reciprocal approximations.
@@ -185,7 +185,7 @@ impl Config {
         }
     }
 
-    /// Returns all tables of timing parameters, each with its path prefix.
+    /// Returns all tables of timing parameters, each with the prefix of its parameter names.
     #[must_use]
     pub fn tables(&self) -> [(&'static str, &dyn ParameterTable); 3] {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]

@@ -20,7 +20,7 @@ const MAX_DEPTH_SHIFT: i32 = 20;
 /// `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// Origin in pixels of the frame. The centre of the top left pixel is (0, 0).
+    /// Origin of the offsets (dx, dy), in pixels of the frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -56,12 +56,12 @@ pub(crate) struct Ellipse {
     pub(crate) peak: [f64; 2],
     /// The greatest value of the conic.
     pub(crate) value: f64,
-    /// Squares of half the width and half the height, in pixels.
+    /// Squares of half the width and half the height of the ellipse, in pixels.
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// Returns 1 / (half the width) and 1 / (half the height), per pixel.
+    /// Returns two reciprocals: 1 / (half the width) and 1 / (half the height) of the ellipse, per pixel.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
@@ -89,7 +89,7 @@ impl Conic {
         }
     }
 
-    /// Returns the same conic, expressed around another origin.
+    /// Returns the same conic with offsets from another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
         let dx = origin[0] - self.origin[0];
         let dy = origin[1] - self.origin[1];

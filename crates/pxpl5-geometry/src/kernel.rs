@@ -49,12 +49,12 @@ pub enum Schedule {
     Dual,
 }
 
-/// Surface values of a triangle that planes interpolate in addition to depth.
+/// Surface values of a triangle. Planes interpolate these values in addition to depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
     /// Colours, computed by lighting each corner.
     Gouraud,
-    /// Colours of the display list, without lighting.
+    /// Colours from the display list, without lighting.
     Precomputed,
     /// Normals in eye coordinates, for Phong shading.
     Phong,
@@ -72,9 +72,9 @@ pub enum KernelList {
 /// Kind of picture that the code is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelPicture {
-    /// An NTSC frame: 640 x 480 in regions of 128 x 128.
+    /// An NTSC frame: 640 x 480 pixels in regions of 128 x 128.
     Frame,
-    /// An NTSC field: 640 x 240 in regions of 128 x 120.
+    /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
     /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives the
     /// size of the frame.
@@ -84,7 +84,7 @@ pub enum KernelPicture {
 /// The choice of kernel code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// Optimization level: compiled or hand-written.
+    /// Optimization level of the kernel's code: compiled or hand-written.
     pub schedule: Schedule,
     /// Kind of triangle that the kernel sets up.
     pub surface: KernelSurface,
@@ -162,7 +162,7 @@ const DUAL: [&str; 7] = [
 /// second time. The colours of the first pass stay.
 const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
 
-/// Returns a source that defines constants, each 1 if its condition is true and 0 otherwise.
+/// Returns an assembly source that defines constants. A constant is 1 if its condition is true, and 0 otherwise.
 pub(crate) fn choices(each: &[(&str, bool)]) -> String {
     each.iter().map(|(name, holds)| format!("{name} = {}\n", u8::from(*holds))).collect()
 }
@@ -237,7 +237,7 @@ impl Kernel {
         ])
     }
 
-    /// Returns the size of a command in bytes.
+    /// Returns the size of one renderer command in bytes.
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
@@ -363,7 +363,7 @@ fn safe_distance(viewport: &Viewport) -> Word {
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
-/// A parameter block under construction. Positions are in bytes, as in kernels/parameters.s.
+/// A parameter block under construction. Positions in the block are in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
 impl ParameterWords {
@@ -409,12 +409,12 @@ fn normal_row(row: [f32; 3]) -> [f32; 4] {
     [x, y, z, 0.0]
 }
 
-/// Returns the words of a double in the memory order of the i860: the low half first.
+/// Returns the two words of a double-precision number in the memory order of the i860: the low half first.
 pub(crate) const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
-/// Returns a triangle in the format of the display list, with normals of unit length.
+/// Returns the words of a triangle in the format of the display list, with normals of unit length.
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];

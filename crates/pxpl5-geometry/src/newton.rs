@@ -4,7 +4,7 @@
 //! it. To round a number, the code adds a large constant and subtracts the constant again. The native code performs the
 //! same steps as the i860 kernels, so both give the same words.
 
-/// Mask of the bits of a double that a seed keeps.
+/// Mask of the bits of a double that a seed (first approximation) keeps: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
 /// The constant 1.5 * 2^52. Its addition rounds a double below 2^51 in absolute value to an integer, ties to even.

@@ -48,10 +48,10 @@ fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// Values that all planes of one triangle have in common.
+/// Values that depth, colour and normal planes of one triangle have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// Distances from corner 0 to corners 1 and 2, in subpixels.
+    /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.

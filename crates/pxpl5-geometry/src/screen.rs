@@ -73,7 +73,7 @@ pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
 /// A triangle on the screen, with surface values of type `A` (colours or normals) for its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScreenTriangle<A> {
-    /// Corners, depths and touched regions.
+    /// Corners and depths of the triangle, and the regions that the triangle touches.
     pub outline: Outline,
     /// Colours or normals of the corners, in the order of the outline's corners.
     pub surface: A,
@@ -148,7 +148,7 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the edge expressions over the pixels of the picture.
+    /// Returns the edge expressions of the triangle over the pixels of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
@@ -178,7 +178,7 @@ impl Outline {
     }
 }
 
-/// Returns one of three surface values, for each of three corners.
+/// Returns component `number` of the surface values, for each of three corners.
 #[inline(always)]
 fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
@@ -205,7 +205,7 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 }
 
 impl<A> ScreenTriangle<A> {
-    /// Returns the edge expressions over the pixels of the picture.
+    /// Returns the edge expressions of the triangle over the pixels of the picture.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
@@ -213,7 +213,8 @@ impl<A> ScreenTriangle<A> {
 }
 
 impl ScreenTriangle<VertexColours> {
-    /// Computes the expressions for `viewport`, which must be the picture of the transform.
+    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
+    /// of the [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
         let [a, b, c] = &self.surface.0;
@@ -223,7 +224,8 @@ impl ScreenTriangle<VertexColours> {
 }
 
 impl ScreenTriangle<SurfaceNormals> {
-    /// Computes the expressions for `viewport`, which must be the picture of the transform.
+    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
+    /// of the [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
         let [a, b, c] = &self.surface.normals;
@@ -257,5 +259,5 @@ pub(crate) fn normal_value(component: i16) -> f32 {
     (i32::from(component) * SCALE) as f32 + NORMAL_HALF
 }
 
-/// Half a unit of a normal's component, in units of the expression.
+/// Half a unit of a normal's component, in units of the expression. The addition of this number makes truncation round.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

@@ -13,7 +13,7 @@ pub enum Touch {
     Degenerate,
     /// The triangle is a back face, and the culling mode excludes back faces.
     BackFacing,
-    /// The triangle touches no region. The triangle is off the screen or between pixel centres.
+    /// The triangle touches no region, because it is off the screen or between pixel centres.
     Untouched,
     /// The triangle touches only this region.
     Region(RegionId),

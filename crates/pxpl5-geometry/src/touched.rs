@@ -134,7 +134,7 @@ impl CornerLanes {
         Self(all)
     }
 
-    /// Returns x (axis 0) or y (axis 1) of the corners.
+    /// Returns the corners' x coordinates (axis 0) or y coordinates (axis 1).
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> [EachLane<i32>; 3] {
         let mut all = [[0; LANES]; 3];
@@ -215,7 +215,7 @@ fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     out
 }
 
-/// Returns the smallest and largest of the corners' coordinates.
+/// Returns the smallest and the largest coordinate of the three corners, for each triangle.
 #[inline(always)]
 fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     let mut low = [0; LANES];

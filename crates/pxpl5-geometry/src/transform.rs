@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
-    /// All triangles are drawn.
+    /// Both windings: all triangles are drawn.
     #[default]
     None,
     /// Back faces are not drawn. A back face is a triangle whose corners run clockwise in model coordinates, seen from
@@ -26,7 +26,7 @@ pub enum Culling {
 }
 
 impl Culling {
-    /// Both choices with their names.
+    /// Both culling modes with their names.
     pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
 }
 
@@ -101,7 +101,7 @@ fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
 
-/// Returns half of `pixels`, converted to subpixels.
+/// Returns half of `pixels`, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
     (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
@@ -179,7 +179,7 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges one value for each corner from the input order to the outline's order.
+    /// Rearranges three values, one for each corner, from the input order of the corners to the outline's order.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
@@ -233,7 +233,7 @@ impl Transform {
         })
     }
 
-    /// Returns the picture of this view.
+    /// Returns the picture for which this view was prepared.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport

@@ -174,7 +174,7 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the element in a row and a column.
+    /// Returns the matrix element in the given row and column.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }

@@ -158,7 +158,7 @@ impl GpBoard {
         }
     }
 
-    /// Returns a handle to the board for a program of this priority.
+    /// Returns a handle to the board for the program of this priority.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }

@@ -60,7 +60,7 @@ pub(crate) struct Batch {
     pub(crate) links: Vec<ChainLink>,
 }
 
-/// One message of a chain.
+/// One message of a chain of messages that the DMA sends together.
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
@@ -78,7 +78,7 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// The i860 that runs code, or `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices that the programs have transformed since the start.
+    /// Number of vertices that the programs have transformed since the start of the run.
     pub(crate) vertex_transforms: u64,
     /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
@@ -143,7 +143,7 @@ impl Wait {
     /// The entry in `Shared::waits` for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The entry in `Shared::waits` for a program that has not run yet.
+    /// The entry in `Shared::waits` for a program that has not run for the first time yet.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 

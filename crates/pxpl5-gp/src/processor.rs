@@ -160,13 +160,13 @@ pub struct Processor {
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
     shelf: Rc<RefCell<DecodedPrograms>>,
-    /// All programs that were ever loaded, in the order of their first calls.
+    /// All programs that were ever loaded, in the order in which they were called for the first time.
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
     /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
-    /// Breakpoint hits since the last [`Processor::take_hits`].
+    /// Breakpoint hits recorded since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
 }
 
@@ -180,7 +180,7 @@ pub struct BreakpointHit {
     pub gp: NodeId,
     /// Address of the instruction at the breakpoint.
     pub address: u32,
-    /// i860 time from the start of the call to the breakpoint.
+    /// Time on the i860's clock from the start of the call to the breakpoint.
     pub into_call: Span,
     /// Registers, control registers and pipes of the i860.
     pub state: Box<State>,
@@ -238,7 +238,7 @@ impl Processor {
         self.version
     }
 
-    /// Returns the port of the board.
+    /// Returns the ring port of the board.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.gp
@@ -403,7 +403,7 @@ impl Processor {
         &self.cpu.state
     }
 
-    /// Returns the number of clocks of all calls so far.
+    /// Returns the number of i860 clocks in all calls so far.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()

@@ -127,7 +127,7 @@ impl Processor {
 /// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A received message as the program takes it from the queue.
+/// A received message in the form in which a program takes it from the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -139,8 +139,8 @@ struct Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
-/// Puts a message into the next receive buffer, as the interface does, and runs the code that receives it. `header` has
-/// the kind and length of the message.
+/// Puts a message into the next receive buffer, as the ring interface does, and runs the code that receives the
+/// message. `header` has the kind and length of the message.
 fn deliver(
     processor: &mut Processor,
     source: NodeId,

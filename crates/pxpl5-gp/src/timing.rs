@@ -8,7 +8,7 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct GpTiming {
         /// Size of the memory of one board.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
-        /// Part of the memory for the bins of Rendering Control. Both bin contexts share this part.
+        /// Part of the memory for the bins of Rendering Control. The two sets of bins (contexts) share this part.
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";

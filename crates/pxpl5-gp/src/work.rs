@@ -37,7 +37,7 @@ impl Gp {
         Ok(())
     }
 
-    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts this work separately.
+    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts the CPU time of this work separately.
     pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;

@@ -17,7 +17,7 @@ pub struct ChannelSnapshot {
     pub destination: NodeId,
     /// Length of the message in words.
     pub words: u32,
-    /// Time at which the arbiter granted the channel.
+    /// Time at which the arbiter granted the channel to the message.
     pub granted: Time,
     /// Time at which the channel becomes free. `None` means that the receiver has a FIFO and has not answered yet.
     pub ends_at: Option<Time>,

@@ -29,7 +29,7 @@ pub struct Ring {
     /// True if a channel or destination has become free since the last grants. In this case, a waiting message may be
     /// granted.
     unblocked: bool,
-    /// Times at which an arbitration is scheduled.
+    /// Times at which an arbitration (a pass that grants channels to waiting messages) is scheduled.
     arbitrations: Vec<Time>,
     /// True if every end of a message causes an event, even if no other message waits for the end.
     watched: bool,
@@ -59,7 +59,7 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of first messages of queues that wait for this destination.
+    /// Number of messages that wait for this destination at the head of a queue.
     heads: u32,
 }
 
@@ -546,7 +546,7 @@ impl QueuedRequest {
 }
 
 impl SourcePort {
-    /// Inserts a message into the queue and returns its index there.
+    /// Inserts a message into the queue and returns the index of the message in the queue.
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;

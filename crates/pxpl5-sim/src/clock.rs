@@ -28,7 +28,7 @@ impl Clock {
         Some(Self { numerator_ps, denominator })
     }
 
-    /// Makes a clock from its frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
+    /// Makes a clock from a frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
     #[must_use]
     pub const fn from_hz(hz: u64) -> Option<Self> {
         Self::new(1_000_000_000_000, hz)

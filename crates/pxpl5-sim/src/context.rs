@@ -45,7 +45,7 @@ impl<E, O> Context<E, O> {
         self.schedule(self.now + span, Phase::Work, event);
     }
 
-    /// Adds an output of the device with the time at which it leaves the device.
+    /// Adds an output of the device. `time` is the time at which the output leaves the device.
     pub fn output(&mut self, time: Time, output: O) {
         self.outputs.push((time, output));
     }
@@ -68,7 +68,7 @@ impl<E, O> Context<E, O> {
         }
     }
 
-    /// Returns true if the device made no output since the last [`Context::drain_outputs`].
+    /// Returns true if the device has made no output since the last [`Context::drain_outputs`].
     #[must_use]
     pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()

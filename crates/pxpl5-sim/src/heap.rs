@@ -3,7 +3,7 @@
 
 /// A type with a sort key. The element with the least key leaves the heap first.
 pub(crate) trait Keyed: Copy {
-    /// Returns the sort key as one number, so that one subtraction compares two keys.
+    /// Returns the sort key as one number. One subtraction then compares two keys.
     fn key(&self) -> u128;
 }
 

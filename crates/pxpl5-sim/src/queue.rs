@@ -48,7 +48,7 @@ const fn work_key(now: Time) -> u128 {
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// The earliest events, at most [`NEAR`] of them, with the next event at the end. If at most [`NEAR`] events wait,
+    /// The earliest events, at most [`NEAR`] events, with the next event at the end. If at most [`NEAR`] events wait,
     /// the heap is empty.
     near: Vec<Due>,
     /// Events in phase `Work` that were scheduled for the current instant during this instant. They need no sorting.

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 struct Open {
     /// Line number of the `.if`.
     line: usize,
-    /// True if the lines around this `.if` are selected.
+    /// True if the lines around this `.if` are assembled.
     outer: bool,
     /// True while lines of the current branch are assembled.
     selected: bool,
@@ -22,7 +22,7 @@ struct Open {
 }
 
 impl Open {
-    /// Begins the next branch of the `.if`. `holds` is the value of the branch's condition.
+    /// Begins the next branch of the `.if`. `holds` is the value of the condition of this branch.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;

@@ -62,7 +62,7 @@ impl Budget {
     }
 }
 
-/// An error, as the number of the source line and a description.
+/// An error of the preprocessor: number of the source line, and description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {

@@ -14,7 +14,7 @@ const PREFETCH: u32 = 18;
 /// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Number of clocks without progress after which the scheduler fails.
+/// Number of clocks without an issued operation after which the scheduler fails.
 const PATIENCE: u32 = 80;
 
 /// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
@@ -180,7 +180,7 @@ impl<'a> Placer<'a> {
         self.adder.iter().chain(&self.multiplier).any(Option::is_some)
     }
 
-    /// Advances [`Placer::first`] past the operations that were already issued.
+    /// Advances [`Placer::first`] to the first operation that was not issued yet.
     fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;

@@ -11,7 +11,7 @@ use super::{COMPILED, Kernel, KernelList, PARAMETERS, PICTURE, SCALAR, Schedule,
 /// the least y, the greatest y, and a free word. The flag is set if both views have the triangle on the screen.
 pub const ENDS_WORDS: usize = 28;
 
-/// Number of words that a triangle's record has for each view.
+/// Number of words that the record of a triangle has for each of the two views.
 pub const ENDS_VIEW_WORDS: usize = 12;
 
 impl Kernel {

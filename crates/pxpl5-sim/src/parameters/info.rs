@@ -38,7 +38,7 @@ pub struct ParameterInfo {
     pub range: (Value, Value),
     /// Smallest and largest value with which the model works.
     pub limits: (Value, Value),
-    /// Source of the value: a paper's short name, a formula or a reason.
+    /// Source of the value: the short name of a paper, a formula, or a reason.
     pub source: &'static str,
 }
 
