@@ -34,7 +34,8 @@ impl Code {
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`, if it was decoded.
+    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`. Returns `None` if this block
+    /// was not decoded.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))

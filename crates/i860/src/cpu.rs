@@ -115,7 +115,7 @@ impl Cpu {
         self.time.empty_caches();
     }
 
-    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops to count.
+    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops this count.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
@@ -183,8 +183,8 @@ impl Cpu {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block that begins at `pc`. If the block contains `stop` or has more than `most` instructions, only
-    /// its first instruction or pair is executed.
+    /// Executes the block that begins at `pc`. If the block contains the address `stop` or has more than `most`
+    /// instructions, only the first instruction or pair of the block is executed.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.

@@ -92,8 +92,8 @@ impl Memo {
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Stops using the number of the current state. Returns the waits from which the [`Scoreboard`] must be restored,
-    /// or `None` if the [`Scoreboard`] is up to date.
+    /// Discards the number of the current scoreboard state, so that the [`Scoreboard`] holds the state again. Returns
+    /// the waits from which the [`Scoreboard`] must be restored, or `None` if the [`Scoreboard`] is up to date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])

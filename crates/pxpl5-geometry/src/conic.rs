@@ -3,8 +3,8 @@
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Number of bits of a silhouette's absolute value within its regions. With the sign, the value has 47 bits. The
-/// renderer evaluates 48 bits.
+/// Number of bits of a silhouette expression's absolute value, at all pixels of the regions that the sphere touches.
+/// With the sign, the value has 47 bits. The renderer evaluates 48 bits.
 const VALUE_BITS: i32 = 46;
 
 /// Largest number of bits of a square root in the renderer.
@@ -30,8 +30,8 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point. Its value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`, with `bulge` as in
-/// [`crate::ScreenSphere`].
+/// A conic in fixed point. Its value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth of the
+/// plane through the sphere's silhouette minus the depth of the sphere (see [`crate::ScreenSphere`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FixedConic {
     pub(crate) quadratic: Quadratic,
@@ -66,8 +66,8 @@ impl Ellipse {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Returns the smallest and largest x and y, in pixels of the frame. Returns `None` if the conic is not an ellipse,
-    /// for example because of NaN, an overflow or a size of 0.
+    /// Returns the smallest and the largest x and y of the ellipse, in pixels of the frame. Returns `None` if the conic
+    /// is not an ellipse, for example because of NaN, an overflow or a size of 0.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);

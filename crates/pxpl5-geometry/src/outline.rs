@@ -23,7 +23,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Returns twice the area, in 1/256 square px. The result is positive unless the corners are on one line.
+    /// Returns twice the area of the triangle, in 1/256 square px. The result is positive unless the corners are on one
+    /// line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;

@@ -28,7 +28,8 @@ use pxpl5_wire::Linear;
 /// distance, no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// The constant 1.5 * 2^52. Its addition rounds a number below 2^51 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^52. If a number below 2^51 in absolute value is added to this constant, the number is rounded
+/// to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, modulo 2^32.

@@ -27,7 +27,8 @@ pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
 /// One unit of the pixels' 24-bit depth, in the units of [`DEPTH_NEAR`].
 pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
 
-/// The constant 1.5 * 2^23. Its addition rounds a number below 2^22 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^23. If a number below 2^22 in absolute value is added to this constant, the number is rounded
+/// to an integer, ties to even.
 const ROUND: f32 = 12_582_912.0;
 
 /// Returns the integer nearest to a number below 2^22 in absolute value.

@@ -69,7 +69,8 @@ impl Slope {
     /// Converts the plane to fixed point, modulo 2^32, like every linear expression. The result is most exact at the
     /// pixel `pixel`.
     ///
-    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a flat plane and counts as flattened.
+    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a constant plane and counted in
+    /// [`SetupStats::flattened_planes`].
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -157,9 +158,9 @@ impl ScreenSphere {
 
     /// Computes the operands for interpolated colour.
     ///
-    /// The root gives the component of the normal towards the eye. The other components are approximated by linear
-    /// expressions on the screen. Because of this approximation, a pixel that faces away from the light is darker than
-    /// ambient light. Light from behind the sphere adds nothing.
+    /// The square root gives the component of the normal towards the eye. The other components are approximated by
+    /// linear expressions on the screen. Because of this approximation, a pixel that faces away from the light is
+    /// darker than ambient light. Light from behind the sphere adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);

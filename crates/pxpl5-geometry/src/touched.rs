@@ -13,8 +13,8 @@ use pxpl5_wire::RegionId;
 /// The regions of all triangles of a mesh, four bytes for each triangle.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// For each triangle: the index of its region, a code without a region, or [`SEVERAL`] plus an index into
-    /// `several`.
+    /// A code for each triangle. The code is the index of the triangle's only region, or [`SEVERAL`] plus an index into
+    /// `several`. Other codes state why the triangle has no region.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }

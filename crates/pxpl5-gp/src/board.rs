@@ -238,8 +238,8 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs in turn until all of them wait for an event outside the board. Each poll runs a program until
-    /// it waits. A program is polled again only after progress of the board's other program.
+    /// Polls the programs in turn until all programs wait for an event outside the board. A poll lets a program
+    /// continue until it must wait again. A program is polled again only after progress of the board's other program.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;

@@ -111,7 +111,8 @@ fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// Memory as the i860 sees it. The caches never hold the part that the i860 shares with the ring interface.
+/// The board's memory with the bus interface for the i860. The caches never hold the part that the i860 shares with the
+/// ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -220,8 +221,8 @@ impl Processor {
         }
     }
 
-    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same core
-    /// configuration. Simulated times do not depend on this call.
+    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same configuration
+    /// of the i860. Simulated times do not depend on this call.
     pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
         self.shelf = Rc::clone(shelf);
     }

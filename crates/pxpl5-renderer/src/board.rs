@@ -88,8 +88,8 @@ pub struct Renderer {
     /// regions to the backing store can be in progress.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store. Each copy waits for an earlier transfer, or for the command that
-    /// releases it.
+    /// Copies whose regions are in the backing store. Each copy waits for the end of an earlier transfer to a frame
+    /// buffer, or for the command that releases the region.
     stored: VecDeque<PendingCopy>,
     /// Command lists received so far. `None` until [`Renderer::watch_fifo`] is called.
     sent: Option<SentLists>,
@@ -111,7 +111,8 @@ pub struct DrawnRegion {
     pub finished_at: Time,
     /// Start time of the copy command. This time is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
-    /// Execution time of the commands since `begun_at`. For the rest of the time, the controller waited for commands.
+    /// Time since `begun_at` in which the controller executed commands. For the rest of the time, the controller waited
+    /// for commands.
     pub executed: Span,
 }
 

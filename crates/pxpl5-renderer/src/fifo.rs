@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that fits into the FIFO when the first of these commands starts. Words are counted from
-    /// 0 since the start of the run.
+    /// Index of the first word that fits into the FIFO when the first command of this sequence starts. Words are
+    /// counted from 0 since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -393,8 +393,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the next `words` words have all entered. Returns `None` while this time depends on the
-    /// end of a blocking command.
+    /// Returns the time at which the next `words` words have all entered the FIFO. Returns `None` while this time
+    /// depends on the end of a blocking command (copy of a region).
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -405,7 +405,8 @@ impl InputFifo {
         (last - self.depth < self.words_left).then(|| self.left.entered(first, last, complete, self.word))
     }
 
-    /// Starts the waiting commands until one blocks. Returns the start time of the blocking command, if there is one.
+    /// Starts the waiting commands in order, up to and including the first blocking command (copy of a region). Returns
+    /// the start time of the blocking command, if there is one.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;

@@ -57,8 +57,8 @@ pub enum LayoutError {
     },
 }
 
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
-/// bits of scratch.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
+/// normal. The other 124 bits are scratch memory.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -69,7 +69,8 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common scratch.
+/// Layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32 bits of scratch
+/// memory.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -80,8 +81,8 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, without
-/// scratch.
+/// Layout of Slats with equal parts: four regions, each with 24 bits of colour, 24 bits of Z and 4 unused bits. There
+/// is no scratch memory.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -95,25 +96,25 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 impl Layout {
     /// Returns the layout of Rendering Control with Phong shading: one region.
     ///
-    /// The layout has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
+    /// The layout has 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
     }
 
-    /// Returns the layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common
-    /// scratch.
+    /// Returns the layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32
+    /// bits of scratch memory.
     ///
-    /// TR94 publishes four contexts in 208 bits. Four equal parts of 52 bits would leave no room for the scratch of a
-    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share one scratch.
-    /// To make room for the scratch, Z has 4 bits less (assumed).
+    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits would leave no room for the
+    /// scratch memory of a sphere (30 bits). A context needs the scratch memory only while a command runs, so all
+    /// contexts can share it. To make room for the scratch memory, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. The
-    /// layout supports triangles, but no spheres.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 bits of colour, 24 bits of Z and 4 unused bits.
+    /// The layout supports triangles, but no spheres.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
@@ -265,7 +266,8 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Draws one line for each field: bit range, a bar with one character per four bits, name, and error text.
+/// Returns a text drawing with one line for each field: bit range, a bar with one character for each four bits, name,
+/// and error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {

@@ -48,8 +48,8 @@ struct SentList {
     context: usize,
     /// Number of words that were sent before this list, since the start of the run.
     first_word: u64,
-    /// Index of the first word of the clear at the beginning of the list, counted since the start of the run. `None` if
-    /// the list does not begin with a clear.
+    /// Index of the first word of the clear command at the beginning of the list, counted since the start of the run.
+    /// `None` if the list does not begin with a clear command.
     clear: Option<u64>,
     /// Index of the first word of the copy command that ends the region, counted since the start of the run. `None`
     /// until this command is received.

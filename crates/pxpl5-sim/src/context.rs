@@ -1,5 +1,5 @@
-//! The interface through which a device acts on the simulation during one event. Also has a test bench for a single
-//! device.
+//! The interface through which a device acts on the simulation during one event. The module also has a test bench for a
+//! single device.
 
 use crate::{EventQueue, Phase, Span, Time};
 

@@ -272,9 +272,9 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// Counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 - 0.99^64) =
-    /// 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give similar
-    /// counts.
+    /// The test counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 -
+    /// 0.99^64) = 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give
+    /// similar counts.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {
@@ -318,8 +318,8 @@ mod tests {
     }
 
     proptest! {
-        /// Compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current instant
-        /// test the separate path through `soon`.
+        /// The test compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current
+        /// instant test the separate path through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

@@ -78,8 +78,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. A line with an unknown name is no constant for conditions: it may be linear
-/// code, or use a label, whose address is not known yet.
+/// Stores the constant that a line defines. A line with an unknown name defines no constant for conditions. Such a line
+/// may be linear code, or may use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

@@ -343,7 +343,8 @@ impl<'a> Placer<'a> {
             .max_by_key(|(height, _)| *height)
     }
 
-    /// Returns the urgency of a pipe, in clocks: the longest path from one of its values to the end of the program.
+    /// Returns the urgency of a pipe, in clocks: the longest path from one of the pipe's values to the end of the
+    /// linear code.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -585,8 +586,8 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// Returns the longest path from each operation to the end, in clocks. If `shake` is not 0, the function adds
-/// pseudo-random noise, which leads to other schedules.
+/// Returns the longest path from each operation to the end of the linear code, in clocks. If `shake` is not 0, the
+/// function adds pseudo-random noise, which leads to other schedules.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);

@@ -260,7 +260,7 @@ impl Tile {
     }
 
     /// Divides `a` by `b`, one binary digit at a time, from the highest digit. Each step compares the remainder with
-    /// the divisor, and subtracts the divisor unless it is larger.
+    /// the divisor, and subtracts the divisor unless the divisor is larger.
     fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {

@@ -28,8 +28,8 @@ impl BitSerial {
         used
     }
 
-    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal, or if runs
-    /// do not contain instructions of this kind.
+    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal, or if an
+    /// instruction of this kind cannot belong to a run.
     fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };

@@ -180,7 +180,7 @@ impl StreamStart {
     }
 }
 
-/// Serial adders in the pixels. They combine the bit streams of the trees into the bits of an expression.
+/// Serial adders in the pixels. The adders combine the bit streams of the trees into the bits of an expression.
 pub(super) trait Evaluator {
     /// State of the serial adders of one vector of pixels between two clocks.
     type Carries<V: SimdVector>;

@@ -42,7 +42,7 @@ impl Tile {
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
     /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
-    /// pixel execute it.
+    /// pixel execute the instruction.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()

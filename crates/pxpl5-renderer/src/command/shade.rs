@@ -139,7 +139,8 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// Computes |N| in `f.root` from the sum of squares in `f.a`. The remainder of the root stays in `f.a`.
+/// Computes the length of the normal in `f.root` from the sum of squares in `f.a`. The remainder of the square root
+/// stays in `f.a`.
 fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));

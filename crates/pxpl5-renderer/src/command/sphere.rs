@@ -123,8 +123,8 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, root and depth. The instructions disable pixels outside the sphere and
-/// pixels that are not nearer, and then store Z.
+/// Appends the instructions for silhouette, square root and depth. The instructions disable pixels outside the sphere
+/// and pixels that are not nearer, and then store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     // Test the sign of the silhouette, then evaluate the same expression again as radicand.

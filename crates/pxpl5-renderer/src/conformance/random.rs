@@ -179,7 +179,8 @@ impl Random {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
-    /// Returns an ellipse around a random pixel. With a probability of 1/8, returns an arbitrary quadratic.
+    /// Returns the silhouette expression of an ellipse around a random pixel. With a probability of 1/8, returns an
+    /// arbitrary quadratic expression.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);

@@ -19,7 +19,8 @@ pub(super) struct DrawSphere<'a, P> {
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Scratch field of the roots. At the end, it must hold the same values as after the command's program.
+    /// Scratch field of the square roots. At the end, the field must hold the same values as after the command's
+    /// program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
@@ -31,8 +32,8 @@ pub(super) struct DrawSphere<'a, P> {
 pub(super) trait PaintSphere {
     /// Stores values in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
-    /// At the start, `temporary` holds the new depths. At the end, it holds the values that the command's program
-    /// leaves in this field.
+    /// At the start, `temporary` holds the new depths. At the end, `temporary` holds the values that the command's
+    /// program leaves in this field.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
@@ -79,8 +80,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette, and the square root of the silhouette's used bits at each
-    /// pixel.
+    /// Computes a mask of the pixels inside the silhouette. Also computes, for each pixel, the square root of the used
+    /// bits of the silhouette expression.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);

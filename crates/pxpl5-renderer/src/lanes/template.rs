@@ -27,7 +27,8 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// Returns the command at the start of `words`, and the words after it. Returns `None` if the words do not match.
+    /// Returns the command at the start of `words`, and the words after the command. Returns `None` if the words do not
+    /// match.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))

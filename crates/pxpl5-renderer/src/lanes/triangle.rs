@@ -60,8 +60,8 @@ pub(super) struct DrawBatch<'a, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle. These values are read only if needed. Expressions refer to
-/// the picture's upper left pixel.
+/// Access to the depth, components and colour of a triangle. These values are read only if needed. The origin of the
+/// expressions is the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
@@ -212,8 +212,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Returns the values of an expression at pixel (x, y) of the array. The expression refers to the picture's upper
-    /// left pixel.
+    /// Returns the values of an expression for a vector that begins at pixel (x, y) of the array. The origin of the
+    /// expression is the picture's upper left pixel.
     #[inline(always)]
     fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
@@ -326,8 +326,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the start values of three expressions. The three calls are written out, because the compiler would not use
-/// the vector unit in a closure.
+/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The three calls are
+/// written out, because the compiler would not use the vector unit in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;

@@ -69,8 +69,8 @@ impl Lanes {
         self.columns.find(first, width)
     }
 
-    /// Executes a clear. The function reads the depth from the words, because words can also clear Z to a depth that
-    /// [`crate::Clear`] does not use.
+    /// Executes a clear command. The function reads the depth from the words of the command, because words can also
+    /// clear Z to a depth that [`crate::Clear`] does not use.
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
