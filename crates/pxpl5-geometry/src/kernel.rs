@@ -92,8 +92,8 @@ pub struct Kernel {
     pub list: KernelList,
     /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// True if the kernel puts commands into the bins of the touched regions. False if the kernel makes one list of
-    /// commands for every region.
+    /// True if the kernel puts commands into the bins of the touched regions. False if the kernel makes a single
+    /// list of commands, which every region receives.
     pub binned: bool,
     /// True if the kernel leaves out back faces.
     pub culls: bool,

@@ -14,7 +14,7 @@ use pxpl5_wire::RegionId;
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
     /// A code for each triangle. The code is the index of the triangle's only region, or [`SEVERAL`] plus an index into
-    /// `several`. Other codes state why the triangle has no region.
+    /// `several`. Other codes state why the triangle has no known region.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }

@@ -25,8 +25,8 @@ pub(super) struct Operation {
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which the code after the stretch expects the result, if any. No line of the linear code reads this
-    /// register.
+    /// Register in which the code after the stretch expects the result, if any. No other line of the linear code
+    /// reads this register.
     pub(super) register: Option<u8>,
 }
 
