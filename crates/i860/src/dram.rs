@@ -1,5 +1,5 @@
-//! The external bus and the page-mode memory behind it. The model computes the arrival time of all data at the request,
-//! without an event for each transfer.
+//! The external bus and the page-mode memory on the bus. The model computes the arrival time of all data at the
+//! request, without an event for each transfer.
 
 use crate::timing::{ChipSizes, DramTiming};
 

@@ -89,7 +89,7 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// Timing of the memory behind the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
+    /// Timing of the memory on the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
     /// the middle of the known values of boards of the period.
     pub struct DramTiming {
         /// Time from a request to the arrival of the first 8 bytes if the DRAM row is already open.
@@ -159,7 +159,7 @@ pub struct Config {
     pub timing: bool,
     /// Rows of the freeze table that are enabled, and their delays in clocks.
     pub freezes: FreezeRules,
-    /// Timing of the memory behind the bus.
+    /// Timing of the memory on the bus.
     pub dram: DramTiming,
     /// Results of the reciprocal approximations `frcp` and `frsqr`, as a table.
     pub seeds: crate::SeedTable,

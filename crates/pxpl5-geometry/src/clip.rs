@@ -4,7 +4,7 @@
 //! plane (z = w), and four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A triangle
 //! outside the picture but inside the guard band is not clipped, because edge expressions can represent the triangle.
 //!
-//! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The two ends of an edge have a
+//! If two triangles share an edge, both are cut at exactly the same point, bit for bit. The two ends of an edge have a
 //! fixed order, which follows from their clip coordinates. The cut is computed from the first end to the second end.
 //! The winding of a triangle thus has no effect, and the cut opens no gap.
 //!

@@ -1,10 +1,10 @@
 //! Set-up of triangles as code of the graphics processor: i860 assembly, and its memory layout.
 //!
-//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. It computes the words of their renderer
-//! commands and writes the commands into bins, one bin for each region. Its steps are: transform, guard band test,
+//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. The kernel computes the words of the renderer
+//! commands and writes the commands into bins, one bin for each region. The steps are: transform, guard band test,
 //! light or normals, snapping to subpixels, planes, conversion of a frame's lines to a field's rows, and regions.
 //! Triangles that are not wholly inside the guard band go to the clipper, a separate program. The kernel replaces steep
-//! planes by flat planes only for pieces of clipped triangles.
+//! planes by planes with a constant value only for pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+

@@ -1,7 +1,7 @@
 //! Set-up of spheres as code of the graphics processor: i860 assembly, and its memory layout. [`crate::kernel`] is the
 //! corresponding code for triangles.
 //!
-//! A [`SphereKernel`] reads the spheres of the display list. It computes the words of their renderer commands and puts
+//! A [`SphereKernel`] reads the spheres of the display list, computes the words of the renderer commands and puts
 //! the commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
 //! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
 //! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level

@@ -1,5 +1,5 @@
-//! The message software as i860 code of the board (kernels/ring.s), and the memory that it shares with the ring
-//! interface.
+//! The message software as i860 code of the board (kernels/ring.s), and the memory that the software shares with the
+//! ring interface.
 //!
 //! ```text
 //!   CODE      DATA                REQUESTS     WINDOW, never in a cache
