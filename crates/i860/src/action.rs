@@ -47,7 +47,7 @@ pub(crate) enum Core {
     PipelinedLoadDouble,
     StorePixels,
     /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
-    /// them from the decoded instruction.
+    /// these operations from the decoded instruction.
     System,
     Branch,
 }

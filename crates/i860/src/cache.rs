@@ -3,7 +3,7 @@
 
 use crate::timing::ChipSizes;
 
-/// A set-associative tag array with pseudo-random replacement. All its sizes are powers of two.
+/// A set-associative tag array with pseudo-random replacement. All sizes of the array are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
     /// Tags of all sets. A tag is a line address with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an empty way.
@@ -102,7 +102,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 }
 
-/// A 16-bit maximal-length shift register. Its pseudo-random numbers choose the cache lines to replace.
+/// A 16-bit maximal-length shift register. The pseudo-random numbers of the register choose the cache lines to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chance(u16);
 

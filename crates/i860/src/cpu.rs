@@ -289,8 +289,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes instructions and pairs of a block until one of them branches or traps. Returns the number of executed
-    /// instructions or pairs, and the control flow after the last of them.
+    /// Executes instructions and pairs of a block until an instruction branches or traps. Returns the number of
+    /// executed instructions or pairs, and the control flow after the last instruction.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {

@@ -83,8 +83,8 @@ impl AddressProfile {
         }
     }
 
-    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both are zero outside
-    /// the range.
+    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both numbers are zero
+    /// outside the range.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;

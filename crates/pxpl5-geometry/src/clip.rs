@@ -33,8 +33,8 @@ pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) extra: [f32; N],
 }
 
-/// The guard band, the volume within which triangles are not clipped. It holds the points with |x| at most `self.x * w`
-/// and |y| at most `self.y * w`.
+/// The guard band, the volume within which triangles are not clipped. The guard band holds the points with |x| at most
+/// `self.x * w` and |y| at most `self.y * w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guard {
     pub(crate) x: f32,

@@ -30,8 +30,8 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point. Its value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth of the
-/// plane through the sphere's silhouette minus the depth of the sphere (see [`crate::ScreenSphere`]).
+/// A conic in fixed point. The value of the conic is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the
+/// depth of the plane through the sphere's silhouette minus the depth of the sphere (see [`crate::ScreenSphere`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FixedConic {
     pub(crate) quadratic: Quadratic,

@@ -356,8 +356,8 @@ pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
 /// the guard band.
 ///
 /// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and at the bottom. The band is symmetric
-/// around the middle of the picture. Its left and top ends are therefore nearer to pixel (0, 0) by the picture's size.
-/// One pixel is reserved for rounding.
+/// around the middle of the picture. The left and top ends of the band are therefore nearer to pixel (0, 0) by the
+/// picture's size. One pixel is reserved for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)

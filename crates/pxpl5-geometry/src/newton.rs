@@ -1,8 +1,8 @@
 //! Quotients, square roots and rounding, computed as on the i860, which has no instruction for division or square root.
 //!
 //! The instructions `frcp` and `frsqr` give a first approximation (seed) with 8 bits of fraction. Newton steps refine
-//! it. To round a number, the code adds a large constant and subtracts the constant again. The native code performs the
-//! same steps as the i860 kernels, so both give the same words.
+//! the approximation. To round a number, the code adds a large constant and subtracts the constant again. The native
+//! code performs the same steps as the i860 kernels, so both give the same words.
 
 /// Mask of the bits of a double that a seed (first approximation) keeps: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);

@@ -10,8 +10,8 @@ use pxpl5_wire::{Linear, format};
 /// Largest distance of a screen triangle's vertex from pixel (0, 0), in pixels, along x and along y.
 ///
 /// For a triangle inside the square of side 2 x 4096 px, twice the area is at most `(2^17)^2 = 2^34` in units of 1/256
-/// square px. Edge expressions are in units of 1/16 square px. Their values at any pixel inside the square are
-/// therefore at most 2^30, and no sum exceeds 32 bits.
+/// square px. Edge expressions are in units of 1/16 square px. The values of edge expressions at any pixel inside the
+/// square are therefore at most 2^30, and no sum exceeds 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
 
 /// Depth of the near plane: 8 units of pixel depth, with [`format::Z_FRACTION_BITS`] fraction bits.

@@ -113,8 +113,8 @@ impl ToScreen {
         Self { scale: [x, -y], centre: [x, y] }
     }
 
-    /// Returns the guard band. Its limits are one pixel inside [`screen::GUARD_PIXELS`], so that rounded positions stay
-    /// within [`screen::GUARD_PIXELS`].
+    /// Returns the guard band. The limits of the guard band are one pixel inside [`screen::GUARD_PIXELS`], so that
+    /// rounded positions stay within [`screen::GUARD_PIXELS`].
     fn guard(&self) -> Guard {
         let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }

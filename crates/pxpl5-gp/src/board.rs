@@ -92,8 +92,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of work. It can also have earlier
-    /// times, at which work would have ended without an interrupt.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of work. The list can also have
+    /// earlier times, at which work would have ended without an interrupt.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,

@@ -5,9 +5,9 @@ use pxpl5_sim::{Span, Time};
 /// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// The interrupt program. While it spends CPU time, the foreground program is suspended.
+    /// The interrupt program. While the interrupt program spends CPU time, the foreground program is suspended.
     Interrupt,
-    /// The foreground program. It runs while the interrupt program spends no CPU time.
+    /// The foreground program. The foreground program runs while the interrupt program spends no CPU time.
     Foreground,
 }
 

@@ -41,9 +41,9 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. It then sends
-    /// the messages of the list `messages` one by one, and sends the message `last` in the background. Before each
-    /// message of the list, the function waits for a free clump buffer (the memory for outgoing messages).
+    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. The function
+    /// then sends the messages of the list `messages` one by one, and sends the message `last` in the background.
+    /// Before each message of the list, the function waits for a free clump buffer (the memory for outgoing messages).
     ///
     /// # Errors
     ///

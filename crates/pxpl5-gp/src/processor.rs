@@ -353,7 +353,7 @@ impl Processor {
         }
     }
 
-    /// Runs the loaded program until it returns. Its decoded code comes from the shared store `shelf`.
+    /// Runs the loaded program until it returns. The decoded code of the program comes from the shared store `shelf`.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();

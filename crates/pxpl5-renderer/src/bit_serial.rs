@@ -39,7 +39,7 @@ pub struct BitSerial {
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Buffer for a run of consecutive instructions. It is reused to avoid allocations.
+    /// Buffer for a run of consecutive instructions. The array reuses the buffer to avoid allocations.
     run: InstructionRun,
 }
 

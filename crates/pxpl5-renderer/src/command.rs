@@ -1,8 +1,8 @@
 //! Commands: fixed-length programs of array instructions, which the graphics processors send.
 //!
-//! A command holds typed operands. Its program follows from the operands and the [`Layout`]. The first instruction of a
-//! drawing command is *enable all*, whose label is the command's kind. The array ignores the label. [`Command::decode`]
-//! and the fast pixel array recognize the command by the label.
+//! A command holds typed operands. The command's program follows from the operands and the [`Layout`]. The first
+//! instruction of a drawing command is *enable all*, whose label is the command's kind. The array ignores the label.
+//! [`Command::decode`] and the fast pixel array recognize the command by the label.
 //!
 //! # Formats
 //!
@@ -46,7 +46,7 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// The kind of a command. Its numeric value is the opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command. The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {

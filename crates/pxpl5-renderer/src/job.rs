@@ -132,7 +132,7 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Returns the number of columns and rows of the region. Each can be less than the array's 128.
+    /// Returns the number of columns and rows of the region. Each number can be less than the array's 128.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]

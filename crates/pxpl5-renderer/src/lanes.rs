@@ -1,5 +1,5 @@
-//! Fast pixel array that computes with whole numbers instead of single bits. Its results equal [`crate::BitSerial`] bit
-//! for bit.
+//! Fast pixel array that computes with whole numbers instead of single bits. The results of the array equal
+//! [`crate::BitSerial`] bit for bit.
 
 mod bounds;
 mod columns;

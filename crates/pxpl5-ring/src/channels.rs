@@ -36,7 +36,7 @@ pub(crate) struct MessageInFlight {
     /// Number of word times until the message ends. Used only after
     /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) slots_left: u64,
-    /// The message until the receiver gets it. Used only after
+    /// The message, kept until it is passed to the receiver. Used only after
     /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) message: Option<Box<Message>>,
 }

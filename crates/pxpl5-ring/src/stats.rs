@@ -70,8 +70,8 @@ pub enum WaitReason {
 }
 
 impl WaitingMessage {
-    /// Returns the port whose board must act before the message can continue. This port is the port that occupies or
-    /// reserves the receiver, or the receiver itself. Returns `None` if the message waits for the ring.
+    /// Returns the port whose board must act before the message can continue. The port belongs to the board that
+    /// occupies or reserves the receiver, or to the receiver. Returns `None` if the message waits for the ring.
     #[must_use]
     pub const fn waits_on(&self) -> Option<NodeId> {
         match self.reason {

@@ -51,8 +51,8 @@ pub struct EventQueue<E> {
     /// The earliest events, at most [`NEAR`] events, with the next event at the end. If at most [`NEAR`] events wait,
     /// the heap is empty.
     near: Vec<Due>,
-    /// Events in phase `Work` that were scheduled for the current instant during this instant. They need no sorting.
-    /// The list is unused if events are shuffled.
+    /// Events in phase `Work` that were scheduled for the current instant during this instant. These events need no
+    /// sorting. The list is unused if events are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,

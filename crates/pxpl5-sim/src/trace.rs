@@ -68,7 +68,7 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
-    /// The time and the described number of the record are equal. Their mixed values are then equal too, so the
+    /// The time and the described number of the record are equal. The mixed values of both are then equal too, so the
     /// exclusive or of both is 0. The hash is then the mix of 0, the first output of SplitMix64 with seed 0 (Vigna's
     /// reference program).
     #[test]

@@ -124,8 +124,8 @@ impl PipeUse {
     }
 }
 
-/// Finds results that are read from a pipe after a scalar operation has destroyed them. The contents of the pipes are
-/// unknown after each label and branch.
+/// Finds results that are read from a pipe after a scalar operation has destroyed these results. The contents of the
+/// pipes are unknown after each label and branch.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [PipeFill::default(); 2];

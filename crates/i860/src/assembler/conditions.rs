@@ -1,7 +1,7 @@
 //! Conditional assembly: `.if`, `.elseif`, `.else` and `.endif`.
 //!
-//! The conditions are evaluated before macros are expanded and before linear code is scheduled. They use the constants
-//! that the lines above define.
+//! The conditions are evaluated before macros are expanded and before linear code is scheduled. The conditions use the
+//! constants that the lines above define.
 
 use super::expression::{Symbols, evaluate};
 use super::source::is_name;

@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// The multiplier. Its pipe has two stages for double-precision sources, and three stages for single-precision
-    /// sources.
+    /// The multiplier. The multiplier's pipe has two stages for double-precision sources, and three stages for
+    /// single-precision sources.
     Multiplier {
         double: bool,
     },

@@ -558,7 +558,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Records the issue of an operation and frees the registers whose last reader is this operation. The registers are
-    /// free from the next clock on. After a store they are free one clock later (row 24 of the freeze table).
+    /// free from the next clock on. After a store, the registers are free one clock later (row 24 of the freeze table).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {

@@ -215,7 +215,7 @@ impl Tile {
     /// Computes `destination := a * b`. For each set bit of `b`, the function adds `a`, shifted by the position of this
     /// bit.
     ///
-    /// Each addition takes one more clock for its carry. For the sign bit of a signed `b`, `a` is subtracted instead.
+    /// Each addition takes one more clock for the carry. For the sign bit of a signed `b`, `a` is subtracted instead.
     /// The destination's bits above the product are copies of the product's sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);

@@ -10,8 +10,8 @@
 //! pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
 //!
 //! No data flows from the pixels back to the trees. The simulator therefore first computes all clocks of the trees.
-//! Then it computes all clocks of each vector of pixels, with the carries in registers. In vectors for trees, a lane
-//! holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
+//! Then the simulator computes all clocks of each vector of pixels, with the carries in registers. In vectors for
+//! trees, a lane holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};

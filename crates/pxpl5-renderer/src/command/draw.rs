@@ -17,7 +17,7 @@ pub struct TriangleCommand {
     pub colour: [Linear; 3],
 }
 
-/// A triangle with interpolated normals. Its pixels are shaded at the end of the frame (Phong).
+/// A triangle with interpolated normals. The triangle's pixels are shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
     /// Edge expressions. A pixel is inside if all three values are `>= 0`.

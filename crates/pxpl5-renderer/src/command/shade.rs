@@ -25,7 +25,7 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 ///
 /// The command takes 3,790 clocks (95 us): the root takes 206 clocks, each quotient 374 clocks and the power 570
 /// clocks. For the real machine, a time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a
-/// material for each pixel are not modelled. Both would also fit in this time.
+/// material for each pixel are not modelled. A second light and a material would also fit in this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
     /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement. The
@@ -165,7 +165,7 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
 }
 
 /// Raises the cosine of the highlight to the power 32, and returns the field with the result. Each step squares the
-/// value and stores it in `f.a` or `f.b` alternately.
+/// value and stores the square in `f.a` or `f.b` alternately.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {

@@ -145,8 +145,8 @@ pub(super) struct Boxes {
 
 /// Distance from the array's first pixel, in pixels. Within this distance, edge values must fit 32 bits.
 ///
-/// Each coefficient then has at most 22 bits, and the constant has 31 bits. Their products are therefore exact in the
-/// 53 bits of an `f64`.
+/// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
+/// exact in the 53 bits of an `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {

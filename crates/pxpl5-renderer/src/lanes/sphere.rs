@@ -12,7 +12,7 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 
 const WIDTH: usize = 128;
 
-/// A sphere to draw. Its expressions have the array's upper left pixel as origin.
+/// A sphere to draw. The sphere's expressions have the array's upper left pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
     /// Silhouette and depth of the sphere. The shifts match the layout's width of roots.
     pub(super) body: SphereBody,

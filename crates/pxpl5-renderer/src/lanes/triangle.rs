@@ -39,7 +39,8 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// The expressions of a triangle that is wider than one vector. Its rows can begin at different columns.
+/// The expressions of a triangle that is wider than one vector. The rows of the triangle can begin at different
+/// columns.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,

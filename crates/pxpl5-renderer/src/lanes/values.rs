@@ -25,8 +25,8 @@ pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 
     }
 }
 
-/// Returns true if a < b. Both are compared as two's complement numbers if `signed` is true, otherwise as unsigned
-/// numbers.
+/// Returns true if a < b. Both numbers are compared as two's complement numbers if `signed` is true, otherwise as
+/// unsigned numbers.
 pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }

@@ -11,7 +11,8 @@ pub enum Provenance {
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value comes from memory or from an estimate. Its range is as wide as the published figures allow.
+    /// The value comes from memory or from an estimate. The range of the value is as wide as the published figures
+    /// allow.
     Assumed,
 }
 
