@@ -38,7 +38,8 @@ impl Cpu {
         Ok(())
     }
 
-    /// Returns the control flow after a store. The flow is different if the store has changed decoded code.
+    /// Returns the control flow after a store: [`Flow::NextOfChangedCode`] if the store has changed decoded code, else
+    /// [`Flow::Next`].
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }

@@ -44,7 +44,7 @@ pub struct BitSerial {
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. `layout` is used only by [`PixelArray::read_colour`], to find the colour.
+    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the field of the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
@@ -70,8 +70,8 @@ impl BitSerial {
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
     /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
-    /// adders do not run. Clocks, faults and all bits stay the same. The default mode takes ten times as long as the
-    /// skipping mode.
+    /// adders are not simulated. Clocks, faults and all bits stay the same. The default mode takes ten times as long as
+    /// the skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

@@ -21,8 +21,8 @@ impl<E, O> Default for Context<E, O> {
 }
 
 impl<E, O> Context<E, O> {
-    /// Sets the current time for the next event and returns the context. The lists keep their allocated memory for
-    /// reuse.
+    /// Sets the current time for the next event and returns the context. The lists of events and outputs keep their
+    /// allocated memory for reuse.
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;

@@ -37,7 +37,7 @@ impl Budget {
         Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
-    /// Returns the remaining budget as one number in bytes. The line budget is scaled to bytes.
+    /// Returns the remaining budget of lines and bytes as one number in bytes. The line budget is scaled to bytes.
     const fn left(&self) -> usize {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }

@@ -219,8 +219,8 @@ struct QuadraticBits {
 
 /// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x, one for each level of the product. Level n has the coefficient's bit that arrived
-    /// n clocks ago.
+    /// Bits of the coefficient of x, one for each level of the product with the column's index. Level n has the bit of
+    /// the coefficient that arrived n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

@@ -74,8 +74,8 @@ pub struct PhongSphereCommand {
     pub colour: u32,
 }
 
-/// Number of bits of a root for which the operands of [`SphereBody`] are defined. Layouts with narrower roots use the
-/// upper bits of these operands.
+/// Number of bits of a square root for which the operands of [`SphereBody`] are defined. Layouts with narrower roots
+/// use the upper bits of these operands.
 const ROOT_BITS: u8 = 12;
 /// Number of upper bits of the square root that are multiplied by the factor of a colour component.
 const COLOUR_ROOT_BITS: u8 = 8;

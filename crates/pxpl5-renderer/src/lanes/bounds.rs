@@ -143,7 +143,7 @@ pub(super) struct Boxes {
     straight: PerTriangle<bool>,
 }
 
-/// Distance from the array's first pixel, in pixels. Within this distance, edge values must fit 32 bits.
+/// Distance from the array's upper left pixel, in pixels. Within this distance, edge values must fit 32 bits.
 ///
 /// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
 /// exact in the 53 bits of an `f64`.

@@ -25,7 +25,8 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// Prepares an expression. `left` and `top` are the picture coordinates of the array's upper left pixel.
+    /// Prepares an expression for evaluation at any place in the array. `left` and `top` are the picture coordinates of
+    /// the array's upper left pixel.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
