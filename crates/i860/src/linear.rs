@@ -81,7 +81,7 @@ pub struct Slots {
     /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
     /// `core`.
     pub core: usize,
-    /// Number of pairs in the schedule.
+    /// Number of instruction pairs in the schedule.
     pub pairs: usize,
 }
 
@@ -129,8 +129,8 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
     Ok(out.into_inner())
 }
 
-/// Passes the operations of each stretch of linear code, with their pairs, to `linear`. Passes every other line to
-/// `other`. The calls have the order of the source.
+/// Passes the operations of each stretch of linear code, with their pairs, to the function `linear`. Passes every other
+/// line of the source to the function `other`. The calls have the order of the source.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

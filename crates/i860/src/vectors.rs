@@ -13,15 +13,16 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Instruction budget of a vector. A longer run fails. The vectors execute fewer than 1,000 instructions.
+/// Largest number of instructions that the program of a vector may execute. A longer run fails. The programs execute
+/// fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One vector: a program, the state before its run and the state expected after its run.
+/// One conformance vector: a program, the state before its run and the state expected after its run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
     /// Identifier, unique in its file.
     pub id: String,
-    /// Group of the vector within the collection.
+    /// Name of the group to which the vector belongs in the collection.
     #[serde(default)]
     pub group: String,
     /// Description of the tested behaviour.
@@ -204,7 +205,7 @@ impl TestVector {
         memory
     }
 
-    /// Runs the vector on a new processor and compares the state after the run.
+    /// Runs the program of the vector on a new processor and compares the state after the run.
     ///
     /// # Errors
     /// Returns the differences in the state, or the reason why the program did not reach its stop address.
@@ -213,7 +214,7 @@ impl TestVector {
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the vector on it and compares the state after the run.
+    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run.
     ///
     /// # Errors
     /// Returns the same errors as [`TestVector::check`].
@@ -242,7 +243,7 @@ impl TestVector {
     }
 }
 
-/// Results of a set of vectors.
+/// Results of the conformance tests with a set of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
     /// Number of vectors that passed.
@@ -259,7 +260,7 @@ impl VectorSummary {
     }
 }
 
-/// Runs all vectors on one processor. The processor is reset before each vector.
+/// Runs the programs of all vectors on one processor. The processor is reset before each program.
 #[must_use]
 pub fn run(vectors: &[TestVector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);

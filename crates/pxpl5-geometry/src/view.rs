@@ -48,23 +48,23 @@ pub enum ViewError {
         "picture: expected 1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines, found {width} x {frame_lines}"
     )]
     PictureSize {
-        /// Width found, in pixels.
+        /// Width of the invalid picture, in pixels.
         width: u32,
-        /// Height found, in frame lines.
+        /// Height of the invalid picture, in frame lines.
         frame_lines: u32,
     },
     /// A region is empty or larger than the renderer's array.
     #[error("region: expected 1 to {REGION_SIZE} pixels by 1 to {REGION_SIZE} lines, found {width} x {height}")]
     RegionSize {
-        /// Width found, in pixels.
+        /// Width of the invalid region, in pixels.
         width: u32,
-        /// Height found, in lines.
+        /// Height of the invalid region, in lines.
         height: u32,
     },
     /// The picture has more regions than a [`RegionMask`] can hold.
     #[error("picture: expected at most {} regions, found {found}", RegionMask::CAPACITY)]
     Regions {
-        /// Number of regions found.
+        /// Number of regions of the invalid picture.
         found: u32,
     },
     /// A matrix contains NaN or an infinity.
@@ -174,7 +174,7 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the element in a row and a column.
+    /// Returns the matrix element in the given row and column.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }

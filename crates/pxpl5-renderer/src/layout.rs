@@ -14,18 +14,18 @@ use std::ops::RangeInclusive;
 pub struct ContextPlan {
     /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Number of regions that share the array.
+    /// Number of contexts. Each context holds one region in pixel memory.
     pub contexts: u8,
-    /// Bits of pixel memory that each context takes.
+    /// Bits of pixel memory that each context (region in the array) takes.
     pub context_bits: u8,
-    /// Field of the colour: 24 bits, 0xRRGGBB.
+    /// Field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Field of the depth, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
     /// Field of the normal: x, y and z in this order, 12 bits each, two's complement. `None` if the layout does not
     /// support Phong shading.
     pub normal: Option<Operand>,
-    /// Field for temporary values of spheres and shading.
+    /// Field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
@@ -57,8 +57,8 @@ pub enum LayoutError {
     },
 }
 
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
-/// bits of scratch.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
+/// normal. The other 124 bits are scratch memory.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -69,7 +69,8 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common scratch.
+/// Layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32 bits of scratch
+/// memory.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -80,8 +81,8 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, without
-/// scratch.
+/// Layout of Slats with equal parts: four regions, each with 24 bits of colour, 24 bits of Z and 4 unused bits. There
+/// is no scratch memory.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -95,25 +96,25 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 impl Layout {
     /// Returns the layout of Rendering Control with Phong shading: one region.
     ///
-    /// The layout has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
+    /// The layout has 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
     }
 
-    /// Returns the layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common
-    /// scratch.
+    /// Returns the layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32
+    /// bits of scratch memory.
     ///
-    /// TR94 publishes four contexts in 208 bits. Four equal parts of 52 bits would leave no room for the scratch of a
-    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share one scratch.
-    /// To make room for the scratch, Z has 4 bits less (assumed).
+    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits would leave no room for the
+    /// scratch memory of a sphere (30 bits). A context needs the scratch memory only while a command runs, so all
+    /// contexts can share it. To make room for the scratch memory, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. The
-    /// layout supports triangles, but no spheres.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 bits of colour, 24 bits of Z and 4 unused bits.
+    /// The layout supports triangles, but no spheres.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
@@ -140,7 +141,7 @@ impl Layout {
         &self.0
     }
 
-    /// Returns the first bit of context `context` in pixel memory.
+    /// Returns the first bit of context `context` (a region) in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
@@ -165,8 +166,8 @@ impl Layout {
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch has only 30 to 35 bits. Returns
-    /// `None` if the scratch is smaller.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch field has only 30 to 35 bits.
+    /// Returns `None` if the scratch field is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -176,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// Returns the bit ranges of all fields, in the order of the plan.
+    /// Returns the bit ranges of all fields, in the order of the fields in [`ContextPlan`].
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
@@ -190,7 +191,7 @@ pub struct FieldRange {
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Length in bits.
+    /// Length of the range in bits.
     pub width: u32,
 }
 
@@ -206,7 +207,7 @@ fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks a field's width against `allowed`. `expected` is the text of the allowed widths for the error.
+/// Checks the width of a field against `allowed`. `expected` describes the allowed widths in the error text.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -240,7 +241,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns one entry for each range: the text of its error, or `None` if it has no error.
+/// Returns one entry for each bit range of a plan: the text of the range's error, or `None` if the range has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -251,8 +252,8 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory. Returns `None` for
-/// other ranges.
+/// Returns the error text of a bit range that overlaps an earlier range or extends beyond pixel memory. Returns `None`
+/// for other ranges.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
@@ -265,7 +266,8 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Draws one line for each field: bit range, a bar with one character per four bits, name, and error text.
+/// Returns a text drawing with one line for each field: bit range, a bar with one character for each four bits, name,
+/// and error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {

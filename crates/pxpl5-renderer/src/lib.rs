@@ -1,4 +1,4 @@
-//! Renderer of Pixel-Planes 5: a 128 x 128 SIMD array of one-bit processors behind an input FIFO on the ring.
+//! Renderer of Pixel-Planes 5: a 128 x 128 SIMD array of one-bit processors with an input FIFO at the ring.
 //!
 //! ```text
 //!  ring --> port --> input FIFO --> controller --> expression evaluator (trees) --+

@@ -21,11 +21,12 @@ pub(super) enum Source {
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of a memory address.
+    /// Offset and base register of the operation's memory address, if any.
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which later code expects the result, if any. No other line of the linear code reads this register.
+    /// Register in which the code after the stretch expects the result, if any. No other line of the linear code
+    /// reads this register.
     pub(super) register: Option<u8>,
 }
 

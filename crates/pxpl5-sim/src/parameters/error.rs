@@ -28,7 +28,7 @@ pub enum ParameterError {
     OutOfLimits {
         /// Field name of the parameter within its table.
         name: &'static str,
-        /// Smallest and largest value that the model can use.
+        /// Smallest and largest value with which the model works.
         limits: (Value, Value),
         /// Rejected value.
         found: Value,

@@ -12,7 +12,7 @@ const MAX_LISTED: usize = 12;
 /// The message lists the valid names. If there are more than 12 names, the message states only the most similar name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
-    /// Kind of thing that has such names, such as `pipeline`.
+    /// Kind of thing that the names belong to, such as `pipeline`.
     pub what: &'static str,
     /// Text that is not a valid name.
     pub found: String,
@@ -21,7 +21,7 @@ pub struct NameError {
 }
 
 impl NameError {
-    /// Creates the error for a text that is none of the valid names.
+    /// Creates the error for the text `found`, which is none of the valid names.
     #[must_use]
     pub fn new(what: &'static str, found: &str, valid: impl IntoIterator<Item = &'static str>) -> Self {
         Self { what, found: found.to_owned(), valid: valid.into_iter().collect() }

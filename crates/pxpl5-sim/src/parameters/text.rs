@@ -5,7 +5,7 @@ use std::fmt;
 /// An error in a text: its place, the expected content and the content found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextError {
-    /// Place of the error in the text, such as `line 3, byte 4`. Empty if the whole text is wrong.
+    /// Place of the error in the text, such as `line 3, byte 4`. The place is empty if the whole text is wrong.
     pub place: String,
     /// The expected content, in words.
     pub expected: &'static str,
