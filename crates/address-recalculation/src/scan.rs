@@ -1,7 +1,7 @@
 //! Exact times at which each pixel is displayed and its orientation is read.
 
-use crate::error::ArpError;
 use crate::timing::{ArpTiming, ScanTiming};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use serde::{Deserialize, Serialize};
@@ -46,10 +46,12 @@ impl Scan {
     /// # Errors
     ///
     /// Fails in the same cases as [`ScanTiming::check`] and [`ArpTiming::check`].
-    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
+    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, SettingError> {
         arp.check()?;
         timing.check()?;
-        let clocks = timing.clocks().ok_or_else(|| ArpError::Number("arp_scan.pixel_ps".to_owned()))?;
+        let clocks = timing
+            .clocks()
+            .ok_or_else(|| SettingError::value("arp_scan.pixel_ps", "a shorter period", timing.pixel_ps))?;
         Ok(Self { timing, pixel: clocks[0], field: clocks[1], depth: arp.depth(), read_ahead: arp.read_ahead() })
     }
 

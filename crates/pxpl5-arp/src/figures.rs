@@ -1,5 +1,7 @@
 //! Comparison of the papers' figures with simulated figures.
 
+use pxpl5_sim::parameters::SettingError;
+
 mod compared;
 mod definitions;
 mod document;
@@ -29,14 +31,12 @@ pub use row::{Row, Standing};
 pub use rows::rows;
 pub use rules::Rules;
 
-use crate::error::WalkError;
-
 /// Runs all experiments and returns them with the rows of the comparison.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiments::run`].
-pub fn all() -> Result<(Experiments, Vec<Row>), WalkError> {
+pub fn all() -> Result<(Experiments, Vec<Row>), SettingError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);
     Ok((experiments, rows))

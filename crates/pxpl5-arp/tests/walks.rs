@@ -4,9 +4,7 @@ use address_recalculation::priority::Falloff;
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
 use pxpl5_arp::pictures::{Picture, of_walk};
-use pxpl5_arp::{
-    Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, WalkError, World, at_frames, walk,
-};
+use pxpl5_arp::{Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, World, at_frames, walk};
 use pxpl5_scene::{Scene, builtin};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -282,7 +280,8 @@ fn what_faces_cannot_show_is_refused_by_name() {
     assert!(refused("mig").contains("structures that do not move"));
     assert!(refused("full-screen:3").contains("fixed to the head"));
     let rate = Settings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..CELLS };
-    assert!(matches!(Simulation::new(&WORLD, &rate), Err(WalkError::Rate(_))));
+    let error = Simulation::new(&WORLD, &rate).expect_err("no rate");
+    assert_eq!(&*error.name, "source.triangles_per_s");
     let mut cells = CELLS;
     cells.numbers.falloff_m = 6.0;
     let error = Simulation::new(&WORLD, &cells).expect_err("refused").to_string();

@@ -1,8 +1,7 @@
 //! All timing parameters of the frame buffer.
 
-use crate::error::FrameBufferConfigError;
 use pxpl5_sim::Clock;
-use pxpl5_sim::parameters::{MAX, ParameterTable, check};
+use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Timing of NTSC video. All times follow from one pixel clock. A line has exactly 780 pixel periods (4004/63 us),
@@ -43,8 +42,12 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found value.
-    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
+    /// [`SettingError`] with the name of the parameter, the expected range and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
+        self.check_numbers().map_err(|error| error.at("frame buffer"))
+    }
+
+    fn check_numbers(&self) -> Result<(), SettingError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
@@ -52,8 +55,7 @@ impl VideoTiming {
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines))?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
-        Ok(())
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))
     }
 
     pub(crate) fn pixel_clock(&self) -> Option<Clock> {

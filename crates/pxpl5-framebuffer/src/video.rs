@@ -1,6 +1,7 @@
 //! Exact times of the video signal, and the position of the beam.
 
-use crate::{FrameBufferConfigError, VideoTiming};
+use crate::VideoTiming;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Clock, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 
@@ -21,14 +22,20 @@ impl Video {
     ///
     /// # Errors
     ///
-    /// The errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
-    pub fn new(timing: VideoTiming) -> Result<Self, FrameBufferConfigError> {
+    /// The errors of [`VideoTiming::check`]. Also an error if the period of a field does not fit into a 64-bit time.
+    pub fn new(timing: VideoTiming) -> Result<Self, SettingError> {
         timing.check()?;
+        let too_long = || {
+            let expected = "pixel_ps x frame_lines x line_pixels below 2^64";
+            SettingError::combination(format_args!(
+                "frame buffer: the period of a field is out of range; expected {expected}"
+            ))
+        };
         Ok(Self {
             timing,
-            pixel: timing.pixel_clock().ok_or(FrameBufferConfigError::Clock)?,
-            line: timing.line_clock().ok_or(FrameBufferConfigError::Clock)?,
-            field: timing.field_clock().ok_or(FrameBufferConfigError::Clock)?,
+            pixel: timing.pixel_clock().ok_or_else(too_long)?,
+            line: timing.line_clock().ok_or_else(too_long)?,
+            field: timing.field_clock().ok_or_else(too_long)?,
         })
     }
 

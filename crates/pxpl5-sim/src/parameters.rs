@@ -35,21 +35,21 @@
 //! table checks these rules.
 
 mod error;
+mod file_error;
 mod info;
 mod macros;
 mod name;
 mod nearest;
 mod number;
 mod table;
-mod text;
 mod value;
 
 pub use crate::{named, parameter_table};
-pub use error::ParameterError;
-pub use info::{ParameterInfo, Standing};
-pub use name::{NameError, find_named, write_name};
+pub use error::{SettingError, SettingErrorKind};
+pub use file_error::{FileError, FileErrorKind, text_of};
+pub use info::{ParameterInfo, Standing, unknown_parameter};
+pub use name::{find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
-pub use text::{TextError, text_of};
 pub use value::{MAX, Value};

@@ -83,12 +83,12 @@ impl Volume {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the volume has fewer slices.
+    /// Returns a [`VolumeError`] if the volume has fewer slices.
     pub fn check_slice(&self, slice: u32) -> Result<u32, VolumeError> {
         let slices = self.frame.planes.slices();
         if slice < slices {
             return Ok(slice);
         }
-        Err(VolumeError::Missing { what: "slice", expected: format!("0 to {}", slices - 1), found: slice.to_string() })
+        Err(VolumeError::value("slice", format_args!("0 to {}", slices - 1), slice))
     }
 }

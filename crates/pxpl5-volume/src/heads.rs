@@ -136,12 +136,11 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
+    /// Returns a [`VolumeError`] if the latency is out of range (0 to 10,000 ms) or missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
-        let wrong = |found: String| VolumeError::Missing {
-            what: "latency",
-            expected: "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)".to_owned(),
-            found,
+        let wrong = |found: String| {
+            let expected = "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)";
+            VolumeError::value("latency", expected, found)
         };
         // The default is the latency of the volume itself.
         let latency_ms = latency_ms.or_else(|| volume.latency_ms()).ok_or_else(|| wrong("none".to_owned()))?;
@@ -156,11 +155,8 @@ impl<'a> HeadComparison<'a> {
 
     fn view(&self) -> Result<HmdView, VolumeError> {
         let width = self.viewer.hmd_width_px as u32;
-        HmdView::new(width, width * 3 / 4, self.viewer.hmd_angle_deg).map_err(|error| VolumeError::Missing {
-            what: "viewer",
-            expected: "a head-mounted display that can be".to_owned(),
-            found: error.to_string(),
-        })
+        HmdView::new(width, width * 3 / 4, self.viewer.hmd_angle_deg)
+            .map_err(|error| VolumeError::value("viewer", "a head-mounted display that can be", error))
     }
 
     fn millimetres_per_pixel(&self) -> f64 {
@@ -178,7 +174,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns a [`VolumeError`] if the length is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, VolumeError> {
         let view = self.view()?;
@@ -200,8 +196,7 @@ impl<'a> HeadComparison<'a> {
     /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
     fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, VolumeError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
-        let wrong =
-            |what, expected: &str, found: String| VolumeError::Missing { what, expected: expected.to_owned(), found };
+        let wrong = |what, expected: &str, found: String| VolumeError::value(what, expected, found);
         if !(seconds > 0.0 && seconds <= 3600.0) {
             return Err(wrong("length", "above 0 s and at most an hour", seconds.to_string()));
         }

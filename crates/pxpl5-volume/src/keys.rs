@@ -3,7 +3,7 @@
 use crate::choices::{ClipKind, Named};
 use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
-use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
+use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value};
 
 /// Paths of the settings that are choices, and of the numbers that no table contains.
 const CHOICES: [&str; 12] = [
@@ -45,7 +45,7 @@ impl VolumeSettings {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::UnknownKey`] with the most similar path, or [`VolumeError::Value`].
+    /// [`VolumeError`] with the most similar path, or with the allowed values.
     pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), VolumeError> {
         let done = match path {
             "clip.variant" => self.set_clip(text),
@@ -70,7 +70,7 @@ impl VolumeSettings {
     ///
     /// # Errors
     ///
-    /// The same as [`Self::set`], and [`VolumeError::Value`] without an equals sign.
+    /// The same as [`Self::set`], and a [`VolumeError`] without an equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), VolumeError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
@@ -115,11 +115,7 @@ impl VolumeSettings {
     }
 
     fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<(), VolumeError> {
-        let unknown = || {
-            let keys = self.keys();
-            let nearest = nearest(path, keys.iter().map(String::as_str)).unwrap_or_default().to_owned();
-            VolumeError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest }
-        };
+        let unknown = || VolumeError::unknown_path("key", path, self.keys()).at(place);
         let Some((_, entry)) = self.numbers().into_iter().find(|(key, _)| key == path) else { return Err(unknown()) };
         let expected = expected_of(entry.info);
         // A whole number is also valid for a real setting, but not the reverse.
@@ -179,5 +175,5 @@ fn choose<T: Named>(choice: &mut T, text: &str) -> Result<(), String> {
 }
 
 fn wrong(key: &str, found: &str, place: &str, expected: String) -> VolumeError {
-    VolumeError::Value { place: place.to_owned(), key: key.to_owned(), expected, found: found.to_owned() }
+    VolumeError::value(key, expected, found).at(place)
 }

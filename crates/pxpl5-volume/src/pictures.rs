@@ -45,7 +45,7 @@ impl Look {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Display`] names the number that is out of range.
+    /// [`VolumeError`] names the number that is out of range.
     pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
         let display = &settings.display;
         Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
@@ -55,7 +55,7 @@ impl Look {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Display`] if the camera is invalid.
+    /// Returns a [`VolumeError`] if the camera is invalid.
     pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
         let undithered = match self.is_undithered {
             true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,

@@ -252,12 +252,7 @@ impl VolumeSettings {
         Ok(())
     }
 
-    fn wrong(prefix: &str, name: &str, expected: &str, found: impl ToString) -> VolumeError {
-        VolumeError::Value {
-            place: "settings".to_owned(),
-            key: format!("{prefix}.{name}"),
-            expected: expected.to_owned(),
-            found: found.to_string(),
-        }
+    fn wrong(prefix: &str, name: &str, expected: &str, found: impl std::fmt::Display) -> VolumeError {
+        VolumeError::value(name, expected, found).in_table(prefix).at("settings")
     }
 }

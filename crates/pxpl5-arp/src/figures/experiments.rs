@@ -6,7 +6,6 @@ use super::gallery::gallery;
 use super::interpretations::{Interpretations, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
 use super::rules::Rules;
-use crate::error::WalkError;
 use crate::report::Report;
 use crate::settings::{Settings, SourceKind};
 use crate::walk::{WalkTally, at_frames, walk};
@@ -14,6 +13,7 @@ use crate::world::World;
 use address_recalculation::Lens;
 use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Threshold};
 use glam::{DMat3, DQuat, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Number of frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800
@@ -94,11 +94,11 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in ones are valid.
-    pub fn run() -> Result<Self, WalkError> {
+    /// Returns a [`SettingError`] if a scene or a number is invalid. The built-in ones are valid.
+    pub fn run() -> Result<Self, SettingError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
-        let fit = |rules: Rules| -> Result<Fit, WalkError> {
+        let fit = |rules: Rules| -> Result<Fit, SettingError> {
             let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
             Ok(Fit { rules, cell_m, rates_hz })
         };
@@ -137,7 +137,7 @@ impl Experiments {
 }
 
 /// Repeats the walk with tears for renderers of decreasing speed.
-fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
+fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, SettingError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
         let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };

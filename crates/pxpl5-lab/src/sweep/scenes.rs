@@ -1,7 +1,8 @@
 //! A cache of the scenes that points of a sweep share.
 
-use crate::experiment_file::{FileError, Plan};
+use crate::experiment_file::Plan;
 use pxpl5_scene::{Placement, Scene};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,7 +15,7 @@ type SceneKey = (String, bool, bool);
 
 impl Scenes {
     /// Returns the scene of a plan. Each scene is loaded once for all points that share it.
-    pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+    pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, SettingError> {
         // The lock is held while loading, so that no other thread loads the same scene.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (plan.scene.name.clone(), plan.scene.placement == Placement::AsInFile, plan.scene.culled);

@@ -1,6 +1,7 @@
 //! The parameter space of a sweep: axes of values, and points by index.
 
-use crate::experiment_file::{ExperimentFile, FileError, Setting};
+use crate::experiment_file::{ExperimentFile, Setting};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
@@ -93,14 +94,15 @@ pub struct SweepSpace {
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
 impl SweepSpace {
-    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, SettingError> {
         let how = "a table [sweep.grid] with lists or ranges of settings";
-        let setting = file.sweep.as_ref().ok_or(FileError::Missing { key: "sweep", how })?;
+        let setting = file.sweep.as_ref().ok_or_else(|| SettingError::missing("sweep", how))?;
         let fault = Fault { sweep: setting, places: &file.sweep_places };
         let table = setting.value.as_table().ok_or_else(|| fault.value("sweep", "a table", &setting.value))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            let nearest = pxpl5_sim::parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
-            return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
+            let found = format!("sweep.{key}");
+            let valid = KEYS.map(|key| format!("sweep.{key}"));
+            return Err(SettingError::unknown_path("key", &found, valid).at(fault.place(&found)));
         }
         // Each setting of the grid is an axis. The lists of `together` form one more axis, the seeds the last.
         let mut axes = Vec::new();
@@ -158,20 +160,15 @@ impl Fault<'_> {
         paths.iter().find_map(|path| self.places.get(path)).unwrap_or(&self.sweep.place).clone()
     }
 
-    fn text(&self, key: &str, expected: &str, found: &str) -> FileError {
-        let place = self.place(key);
-        FileError::Value { place, key: key.to_owned(), expected: expected.to_owned(), found: found.to_owned() }
+    fn text(&self, key: &str, expected: &str, found: &str) -> SettingError {
+        SettingError::value(key, expected, found).at(self.place(key))
     }
 
-    fn value(&self, key: &str, expected: &str, found: &Value) -> FileError {
+    fn value(&self, key: &str, expected: &str, found: &Value) -> SettingError {
         self.text(key, expected, &found.to_string().chars().take(60).collect::<String>())
     }
 
-    fn unknown(&self, found: &str, nearest: &str) -> FileError {
-        FileError::UnknownKey { place: self.place(found), found: found.to_owned(), nearest: nearest.to_owned() }
-    }
-
-    fn table(&self, table: &Table, key: &str) -> Result<Table, FileError> {
+    fn table(&self, table: &Table, key: &str) -> Result<Table, SettingError> {
         match table.get(key) {
             None => Ok(Table::new()),
             Some(Value::Table(table)) => Ok(table.clone()),
@@ -179,7 +176,7 @@ impl Fault<'_> {
         }
     }
 
-    fn values(&self, path: &str, value: &Value) -> Result<Values, FileError> {
+    fn values(&self, path: &str, value: &Value) -> Result<Values, SettingError> {
         match value {
             Value::Array(list) if !list.is_empty() => Ok(Values::Listed(list.clone())),
             Value::Table(range) => self.range(path, range),
@@ -187,7 +184,7 @@ impl Fault<'_> {
         }
     }
 
-    fn range(&self, path: &str, range: &Table) -> Result<Values, FileError> {
+    fn range(&self, path: &str, range: &Table) -> Result<Values, SettingError> {
         let expected = "whole numbers { from, to, step } with from <= to and step > 0";
         let Some([from, step, last]) = from_step_last(range) else {
             return Err(self.value(path, expected, &Value::Table(range.clone())));
@@ -200,7 +197,7 @@ impl Fault<'_> {
     }
 
     /// Returns an axis whose lists of values change together. All lists must have the same length.
-    fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
+    fn together(&self, table: Table) -> Result<Option<Axis>, SettingError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
             let values = self.values(&path, &value)?;
@@ -216,7 +213,7 @@ impl Fault<'_> {
         Ok(Some(axis).filter(|axis| !axis.paths.is_empty()))
     }
 
-    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, FileError> {
+    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, SettingError> {
         let Some(value) = seeds else { return Ok(None) };
         let Some(count) = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count)) else {
             return Err(self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value));
@@ -225,7 +222,7 @@ impl Fault<'_> {
     }
 
     /// Checks that every path of the axes is a key of the file, and that no two axes set the same key.
-    fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), FileError> {
+    fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), SettingError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
             return Err(self.text("sweep", "at least one setting under [sweep.grid]", "none"));

@@ -61,7 +61,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
         // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
-        render_volume(display, &recording()?, &config, &HostRenderer, workers).map_err(VolumeError::from)
+        render_volume(display, &recording()?, &config, &HostRenderer, workers)
     };
     let by_slice: VolumeStats = drawn(1)?.stats;
     let batched = drawn(Tiling::PAPER.batch)?;

@@ -75,7 +75,7 @@ fn key_of(view: &SliceView) -> ViewKey {
 ///
 /// # Errors
 ///
-/// [`VolumeError::Missing`] names the setting that the renderers do not support.
+/// [`VolumeError`] names the setting that the renderers do not support.
 pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
     let rules = [
         (settings.clip == ClipKind::Hyperbolic, "--clip", "hyperbolic, which is one quadratic", settings.clip_text()),
@@ -93,7 +93,7 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
     match rules.into_iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, what, expected, found)) => {
-            Err(VolumeError::Missing { what, expected: format!("{expected} with --on pixel-planes"), found })
+            Err(VolumeError::value(what, format_args!("{expected} with --on pixel-planes"), found))
         }
     }
 }
