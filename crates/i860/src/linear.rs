@@ -58,17 +58,9 @@ mod parse;
 mod place;
 mod settings;
 
+use crate::AssemblyError;
 use std::cell::RefCell;
 use std::fmt::Write as _;
-
-/// An error in straight-line code between `.linear` and `.endlinear`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {reason}")]
-pub struct LinearError {
-    pub line: usize,
-    /// Description of the error, with the expected and the found text.
-    pub reason: String,
-}
 
 /// The number of operations in a stretch of linear code, for each half of a pair, and the length of the schedule in
 /// clocks (without freezes).
@@ -87,7 +79,7 @@ pub struct Slots {
 ///
 /// # Errors
 /// The errors of [`schedule`].
-pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
+pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
     let mut found = Vec::new();
     stretches(
         source,
@@ -109,8 +101,8 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
 /// Replaces every stretch of linear code in a source by instruction pairs. Other lines stay unchanged.
 ///
 /// # Errors
-/// Returns [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
-pub fn schedule(source: &str) -> Result<String, LinearError> {
+/// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many registers.
+pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(
         source,
@@ -132,7 +124,7 @@ fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
     mut other: impl FnMut(&str),
-) -> Result<(), LinearError> {
+) -> Result<(), AssemblyError> {
     let mut pool = Vec::new();
     let mut lines = source.lines().enumerate().map(|(n, text)| (n + 1, text));
     while let Some((line, text)) = lines.next() {
@@ -145,8 +137,8 @@ fn stretches(
                 // A stretch goes up to the end directive.
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
-                let pairs =
-                    place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
+                let pairs = place::pairs_of(&operations, &pool, settings)
+                    .map_err(|reason| AssemblyError::in_line(line, reason))?;
                 linear(&operations, &pairs);
             }
             _ => other(text),

@@ -1,6 +1,7 @@
-//! Positions of errors in model files.
+//! Positions of errors in model files, and errors that all importers have.
 
-use std::fmt;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
+use std::{fmt, io};
 
 /// The position in a file at which an error was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,4 +19,14 @@ impl fmt::Display for FilePlace {
             FilePlace::Byte(byte) => write!(f, "byte {byte}"),
         }
     }
+}
+
+/// Creates the error of a model file that the operating system cannot read.
+pub(crate) fn unreadable(file: &str, error: &io::Error) -> FileError {
+    FileError::unreadable(file, "a readable file", error)
+}
+
+/// Creates the error of a model file that is well formed but contains nothing to draw.
+pub(crate) fn nothing_to_draw(file: &str, expected: &str) -> FileError {
+    FileError::new(FileErrorKind::Empty, format_args!("at least one {expected}"), "none").in_file(file)
 }

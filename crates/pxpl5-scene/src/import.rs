@@ -14,6 +14,7 @@ mod polygon;
 mod source;
 mod stl;
 
+use crate::error::unreadable;
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::io::Read;
 use std::path::Path;
@@ -146,14 +147,6 @@ fn read_placed(
             model.into_scene(name, size, placement)
         }
     }
-}
-
-pub(super) fn unreadable(file: &str, error: &std::io::Error) -> FileError {
-    FileError::unreadable(file, "a readable file", error)
-}
-
-fn nothing_to_draw(file: &str, expected: &str) -> FileError {
-    FileError::new(FileErrorKind::Empty, format_args!("at least one {expected}"), "none").in_file(file)
 }
 
 /// Reads a model from the bytes of its file. `name` identifies the model in errors and becomes the name of the scene.

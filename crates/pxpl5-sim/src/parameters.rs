@@ -31,6 +31,13 @@
 //! [`ParameterTable::out_of_range`] lists these parameters. A value outside its limits is an error of
 //! [`ParameterTable::check`].
 //!
+//! # Errors
+//!
+//! All crates have the same two errors for inputs. [`SettingError`] is for a setting, a name or an argument, and
+//! [`FileError`] is for a file or a text. Both state the place, the expected and the found content. Their `kind` tells
+//! programs the reason. A setting that names an unusable file is a [`SettingError`] of the kind
+//! [`File`](SettingErrorKind::File).
+//!
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
 //! table checks these rules.
 

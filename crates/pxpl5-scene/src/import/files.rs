@@ -5,7 +5,8 @@ use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fs::{self, File};
 use std::path::Path;
 
-use super::{Format, Placement, read_placed, unreadable};
+use super::{Format, Placement, read_placed};
+use crate::error::unreadable;
 use crate::scene::Scene;
 
 /// Loads a model file. The extension of the path determines the format.

@@ -210,7 +210,7 @@ impl Model {
             return Ok(());
         }
         let expected = if self.triangles.is_empty() { "triangle" } else { "triangle with an area" };
-        Err(super::nothing_to_draw(name, expected))
+        Err(crate::error::nothing_to_draw(name, expected))
     }
 
     /// Makes a scene of the mesh. The bytes of the file may be freed before this.

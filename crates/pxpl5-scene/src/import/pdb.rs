@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::mesh::{Fit, seen_by};
 use super::source::{excerpt, text};
 use super::{Placement, Source};
-use crate::error::FilePlace;
+use crate::error::{FilePlace, nothing_to_draw};
 use crate::scene::{Scene, Sphere};
 
 /// An atom of a Protein Data Bank file.
@@ -66,7 +66,7 @@ const OTHER: Element = element("?", 1.80, [255, 20, 147]);
 pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, FileError> {
     let atoms = read_atoms(source)?;
     if atoms.is_empty() {
-        return Err(super::nothing_to_draw(source.name, "atom"));
+        return Err(nothing_to_draw(source.name, "atom"));
     }
     let fit = placement.fit(atoms.iter().map(|a| (a.position, a.element.radius)));
     let spheres = atoms.iter().map(|a| a.sphere(a.position, &fit)).collect();

@@ -1,5 +1,5 @@
 use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
-use std::fmt;
+use std::fmt::{self, Display};
 use std::str::FromStr;
 
 /// Description of a complete mapping, for error messages.
@@ -114,7 +114,7 @@ impl Columns {
             let named = header.iter().position(|name| name == wanted);
             let index = named.or_else(|| number(wanted)).ok_or_else(|| {
                 let expected = format!("a column `{wanted}` for {}", field.name);
-                FileError::new(FileErrorKind::Syntax, expected, header.join(", ")).at(format_args!("line {line}"))
+                of_line(line, expected, header.join(", "))
             })?;
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
@@ -122,6 +122,11 @@ impl Columns {
         let all: Vec<Column> = found.into_iter().flatten().collect();
         all.try_into().map_err(|_| FileError::new(FileErrorKind::Syntax, EXPECTED, self).at("columns"))
     }
+}
+
+/// Returns the error of a line, counted from 1, whose form is wrong.
+pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
+    FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }
 
 /// Parses a column number that counts from 1, and returns the index that counts from 0.

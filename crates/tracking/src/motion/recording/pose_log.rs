@@ -4,8 +4,7 @@
 use pxpl5_sim::parameters::FileError;
 use serde_json::Value;
 
-use super::columns::Column;
-use super::read::of_line;
+use super::columns::{Column, of_line};
 
 /// Column names without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
 const NAMES: [&str; 8] = [

@@ -3,7 +3,7 @@ use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fmt::Display;
 
 use super::axes::Axes;
-use super::columns::{Column, Columns};
+use super::columns::{Column, Columns, of_line};
 use super::decimal::scaled;
 use super::pose_log;
 use super::{FARTHEST_M, FASTEST, LATEST_S, Sample};
@@ -344,9 +344,4 @@ fn no_sample() -> FileError {
 
 fn out_of_range(place: impl Display, expected: impl Display, found: impl Display) -> FileError {
     FileError::new(FileErrorKind::Number, expected, found).at(place)
-}
-
-/// Returns the error of a line, counted from 1, whose form is wrong.
-pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
-    FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }
