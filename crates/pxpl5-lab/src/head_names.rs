@@ -122,7 +122,7 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
         }
         ("walk", _) => return Err(no_path(text)),
         _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
-        _ => return Err(unknown("motion", text, "still pan slide sine pendulum synthetic walk", MOTIONS)),
+        _ => return Err(unknown("motion", text, listed("still pan slide sine pendulum synthetic walk"), MOTIONS)),
     })
 }
 
@@ -132,13 +132,18 @@ fn no_path(motion: &str) -> SettingError {
     ))
 }
 
-/// Creates the error of an unknown name. `names` is a text with all valid names, and `forms` has their parameters too.
-fn unknown(what: &str, found: &str, names: &str, forms: &str) -> SettingError {
-    let names = names.split([',', ' ']).filter(|name| !["", "or"].contains(name));
+/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`: all
+/// names, or names with their parameters.
+pub(crate) fn unknown<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>, forms: &str) -> SettingError {
     let SettingError { nearest, .. } = SettingError::unknown_path(what, found, names);
     SettingError::combination(format_args!(
         "there is no {what} `{found}`; did you mean `{nearest}`? (expected {forms})"
     ))
+}
+
+/// Returns the names in a list such as `none, velocity or kalman`.
+fn listed(names: &str) -> impl Iterator<Item = &str> {
+    names.split([',', ' ']).filter(|name| !["", "or"].contains(name))
 }
 
 /// Parses a number whose absolute value is at most `most`.
@@ -188,7 +193,7 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
         "3space" => (TrackerConfig::polhemus_3space_by(tables), "space"),
         "3space-patched" => (TrackerConfig::polhemus_3space_by(tables).without_polling(), "space"),
         "ideal" => (TrackerConfig::ideal_by(tables), "ideal"),
-        _ => return Err(unknown("tracker", name, TRACKERS, TRACKERS)),
+        _ => return Err(unknown("tracker", name, listed(TRACKERS), TRACKERS)),
     })
 }
 
@@ -207,7 +212,7 @@ pub fn predictor(name: &str) -> Result<PredictorKind, SettingError> {
         "acceleration" => PredictorKind::ConstantAcceleration,
         "kalman" => PredictorKind::Kalman,
         _ => {
-            return Err(unknown("predictor", name, PREDICTORS, PREDICTORS));
+            return Err(unknown("predictor", name, listed(PREDICTORS), PREDICTORS));
         }
     })
 }

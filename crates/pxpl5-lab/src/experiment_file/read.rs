@@ -1,6 +1,7 @@
 //! Typed access to the settings of an experiment file.
 
 use super::{ExperimentFile, Setting};
+use crate::head_names;
 use pxpl5_sim::parameters::{SettingError, Value as Number};
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -79,7 +80,9 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> SettingErro
 pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator<Item = &'a str>) -> SettingError {
     let what = key.rsplit('.').next().unwrap_or(key);
     let found: String = plain(&setting.value).chars().take(60).collect();
-    SettingError::unknown(what, &found, valid).at(format_args!("{}: {key}", setting.place))
+    let names: Vec<&str> = valid.into_iter().collect();
+    let error = head_names::unknown(what, &found, names.iter().copied(), &format!("one of {}", names.join(", ")));
+    error.at(format_args!("{}: {key}", setting.place))
 }
 
 /// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have it.

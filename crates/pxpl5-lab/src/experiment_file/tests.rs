@@ -49,7 +49,7 @@ fn errors_name_the_line_and_what_was_expected() {
         ("pipeline = \"slats\"\nscene = \"mig\"\nseed = 1.5", "line 3: seed: expected a whole number"),
         (
             "pipeline = \"slats\"\nscene = \"mig\"\nlevel = \"cycles\"",
-            "line 3: level: expected analytic, transaction or cycle, found `cycles`",
+            "line 3: level: there is no level `cycles`; did you mean `cycle`? (expected one of analytic, transaction, cycle)",
         ),
         (
             "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
