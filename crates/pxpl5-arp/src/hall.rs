@@ -55,7 +55,7 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, SettingError> {
         Route::Diagonal => vec![at(near, near), at(far, far)],
         Route::Round => vec![at(0.25, 0.25), at(0.75, 0.25), at(0.75, 0.75), at(0.25, 0.75)],
     };
-    Ok(Walk::new(&corners, 1.0)?)
+    Walk::new(&corners, 1.0)
 }
 
 /// Returns a scene whose length, width and path are multiplied by `factor`. Heights stay the same.

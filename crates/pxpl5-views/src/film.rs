@@ -55,9 +55,9 @@ impl Film {
         let delay = frame_seconds(machine.record().display());
         let size = size(machine.record().display(), &surfaces);
         let mut animation = Animation::begin(out, size, self.periods as u32, delay, texts)?;
-        let add = |_, picture| animation.add(&picture).map(|()| true).map_err(PictureError::from);
+        let add = |_, picture| animation.add(&picture).map(|()| true);
         self.each_of(&mut machine, &surfaces, add)?;
-        Ok(animation.finish()?)
+        animation.finish()
     }
 
     /// Runs the experiment and calls `take` with the number and the picture of each period, in order. The pictures are

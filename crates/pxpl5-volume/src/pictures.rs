@@ -48,7 +48,7 @@ impl Look {
     /// [`VolumeError`] names the number that is out of range.
     pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
         let display = &settings.display;
-        Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
+        self.camera.check_before([display.width as u32, display.height as u32])
     }
 
     /// Returns the light that reaches the eye during one turn of the screen.
@@ -99,8 +99,7 @@ impl Look {
         frames: u32,
         workers: &'a dyn Workers,
     ) -> impl Iterator<Item = Result<RgbImage, VolumeError>> + use<'a> {
-        let pictures = film(&volume.frame.planes, self.camera, self.options, frames, workers);
-        pictures.map(|picture| Ok(picture?))
+        film(&volume.frame.planes, self.camera, self.options, frames, workers)
     }
 }
 

@@ -172,7 +172,7 @@ impl VolumeSettings {
     pub fn swept_display(&self) -> Result<SweptDisplay, VolumeError> {
         self.check_tables()?;
         let bits = self.clip_numbers.plane_fraction_bits;
-        Ok(SweptDisplay::new(SweptConfig {
+        SweptDisplay::new(SweptConfig {
             slices: self.display.slices as u32,
             width: self.display.width as u32,
             height: self.display.height as u32,
@@ -183,7 +183,7 @@ impl VolumeSettings {
             // 53 bits are the full double precision.
             plane_fraction_bits: (bits < 53).then_some(bits as u32),
             projection: self.slice_projection(),
-        })?)
+        })
     }
 
     /// Returns the settings for rendering a volume.

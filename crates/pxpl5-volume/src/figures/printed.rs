@@ -47,7 +47,7 @@ pub(super) fn row(
 }
 
 pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
-    Ok(PerspectaConfig::PAPERS.swept(clip, projection)?)
+    PerspectaConfig::PAPERS.swept(clip, projection)
 }
 
 pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
@@ -60,7 +60,7 @@ pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
 
 fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, VolumeError> {
     let config = VolumeConfig { strobes: Strobes::Mirror, keeps_colours: true, ..VolumeConfig::paper() };
-    Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
+    render_volume(display, &recording()?, &config, &HostRenderer, workers)
 }
 
 /// Returns figure P2. Points on a circle around the axis meet each plane on both sides, and points on the axis are in
