@@ -74,7 +74,7 @@ fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() 
         ),
         (
             "display = { scan = \"sideways\" }",
-            "display.scan: there is no scan `sideways`; did you mean `rolling`? (expected one of rolling, global)",
+            "display.scan: there is no scan `sideways`; did you mean `global`? (expected one of rolling, global)",
         ),
         (
             "display = { width = 4000, height = 4000 }",
