@@ -207,8 +207,8 @@ pub mod firmware {
 pub mod device {
     pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
     pub use pxpl5_wire::display::{
-        BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
-        DoubleBuffer, LightTimes, PixelLight, ScanOrder, Surface,
+        BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, DoubleBuffer,
+        LightTimes, PixelLight, ScanOrder, Surface,
     };
 }
 

@@ -159,7 +159,7 @@ def test_a_run_that_is_too_short_says_how_long_it_must_be() -> None:
 @pytest.mark.parametrize(
     ("keywords", "words"),
     [
-        ({"pipeline": "slat", "scene": "mig"}, "the nearest is slats"),
+        ({"pipeline": "slat", "scene": "mig"}, "there is no pipeline `slat`; did you mean `slats`"),
         ({"pipeline": "slats"}, "scene is missing: give a built-in scene"),
         ({"pipeline": "slats", "scene": "mig", "copi": "whole"}, "there is no key `copi`; did you mean `copy`"),
         ({"pipeline": "slats", "scene": "mig", "fields": 0}, "fields: expected"),

@@ -1,7 +1,7 @@
 //! Exact times at which each pixel is displayed and its orientation is read.
 
-use crate::error::ArpError;
 use crate::timing::{ArpTiming, ScanTiming};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, Video};
 use serde::{Deserialize, Serialize};
@@ -41,7 +41,7 @@ impl FaceScan {
     /// # Errors
     ///
     /// Fails in the same cases as [`ScanTiming::check`] and [`ArpTiming::check`].
-    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
+    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, SettingError> {
         arp.check()?;
         Ok(Self { video: timing.video()?, depth: arp.depth(), read_ahead: arp.read_ahead() })
     }

@@ -3,6 +3,7 @@
 use crate::timing::JitpTiming;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{
@@ -10,7 +11,6 @@ use pxpl5_wire::{
 };
 use std::fmt;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// Mode of interpolation between the two views of a field. The mode determines the paths of vertices from the start to
 /// the end of the field.
@@ -158,23 +158,6 @@ pub struct JitpConfig {
     pub timing: JitpTiming,
 }
 
-/// The error for a configuration that cannot run.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum JitpConfigError {
-    /// The configuration has no slave GP.
-    #[error("just-in-time pixels need a master and at least one slave GP, found no slave")]
-    NoSlave,
-    /// A strip or block has an invalid size.
-    #[error("strips or blocks must have {} to {} lines, found {found}", expected.0, expected.1)]
-    Size {
-        /// Smallest and largest number of lines.
-        expected: (u32, u32),
-        /// Requested number of lines.
-        found: u32,
-    },
-}
-
 /// Number of view numbers for each field. A field has at most 240 strips.
 const VIEWS_PER_FIELD: u64 = 256;
 
@@ -183,17 +166,21 @@ impl JitpConfig {
     ///
     /// # Errors
     ///
-    /// Returns [`JitpConfigError`] with the expected and the found value.
-    pub fn check(&self) -> Result<(), JitpConfigError> {
+    /// Returns [`SettingError`] with the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
         if self.slaves.is_empty() {
-            return Err(JitpConfigError::NoSlave);
+            let reason = "just-in-time pixels need a master and at least one slave GP, found no slave";
+            return Err(SettingError::combination(reason));
         }
         let (found, expected) = match self.schedule {
             DrawingSchedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
             DrawingSchedule::Roam { block, .. } => (block, (4, 128)),
         };
-        let fits = (expected.0..=expected.1).contains(&found);
-        if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
+        if (expected.0..=expected.1).contains(&found) {
+            return Ok(());
+        }
+        let (low, high) = expected;
+        Err(SettingError::combination(format_args!("strips or blocks must have {low} to {high} lines, found {found}")))
     }
 
     /// Returns the number of the view for one strip of a field.

@@ -66,7 +66,7 @@ mod slave;
 pub mod timing;
 mod whole;
 
-pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, JitpConfigError, Viewpoint, Wanted};
+pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint, Wanted};
 pub use host::host;
 pub use master::master;
 pub use slave::{Transforms, slave};

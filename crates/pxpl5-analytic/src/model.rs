@@ -5,11 +5,12 @@ use super::renderer::Cost;
 use crate::{no_form, video_of};
 use pphigs::TransformCost;
 use pxpl5_gp::GpTiming;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{DuePictures, PictureResult, Pipeline, Slats, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
 
 /// Number of regions of a field, both eyes together.
@@ -86,19 +87,12 @@ impl SlatsModel {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if there are too few renderers, or if messages to renderers leave fewer than two
+    /// Returns a [`SettingError`] if there are too few renderers, or if messages to renderers leave fewer than two
     /// channels for split copies. Such copies would wait for each other, and the analytic level does not model this
     /// wait.
-    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, SettingError> {
         // Each renderer holds as many regions as its memory layout permits.
-        let contexts = usize::from(program.layout().plan().contexts.max(1));
-        if config.n_renderers < REGIONS.div_ceil(contexts) {
-            let error = slats::SlatsConfigError::TooFewRenderers {
-                found: config.n_renderers,
-                expected: REGIONS.div_ceil(contexts),
-            };
-            return Err(ConfigError::Board(error.to_string()));
-        }
+        slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)?;
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }

@@ -3,8 +3,9 @@
 use crate::cube_faces::{CubeView, DrawCounts};
 use crate::world::World;
 use address_recalculation::FaceSet;
-use address_recalculation::priority::{CellAssignment, PriorityError, RegionWarp};
+use address_recalculation::priority::{CellAssignment, RegionWarp};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 
 /// The data from which a display memory is drawn. Its cube faces are drawn later, when they are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +54,7 @@ pub(crate) fn warp(
     dealing: &CellAssignment,
     memory: usize,
     places: [DVec3; 2],
-) -> Result<Option<(RegionWarp, CellAssignment, usize)>, PriorityError> {
+) -> Result<Option<(RegionWarp, CellAssignment, usize)>, SettingError> {
     let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_length_m(), places[0], places[1])?;
     Ok(Some((warp, *dealing, memory)))
 }

@@ -1,6 +1,5 @@
 //! A complete experiment: a viewer's walk through a scene, and the view at its end.
 
-use crate::error::WalkError;
 use crate::hall::{path_of, scaled};
 use crate::look::WalkFaces;
 use crate::pictures::ahead;
@@ -10,6 +9,7 @@ use crate::settings::WalkSettings;
 use crate::walk::{WalkTally, at_frames, walked};
 use crate::world::World;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::motion::Walk;
@@ -52,8 +52,8 @@ impl WalkOutcome {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a setting is invalid or the scene is not supported.
-    pub fn of(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> Result<Self, WalkError> {
+    /// Returns a [`SettingError`] if a setting is invalid or the scene is not supported.
+    pub fn of(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> Result<Self, SettingError> {
         // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;

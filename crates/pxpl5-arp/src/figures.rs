@@ -1,5 +1,7 @@
 //! Comparison of the papers' figures with simulated figures.
 
+use pxpl5_sim::parameters::SettingError;
+
 mod compared;
 mod definitions;
 mod document;
@@ -29,7 +31,6 @@ pub use row::{limit, row, shape, verdict};
 pub use rows::rows;
 pub use rules::Rules;
 
-use crate::error::WalkError;
 use pxpl5_sim::figures::FigureRow;
 
 /// Runs all experiments and returns them with the rows of the comparison.
@@ -37,7 +38,7 @@ use pxpl5_sim::figures::FigureRow;
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiments::run`].
-pub fn all() -> Result<(Experiments, Vec<FigureRow>), WalkError> {
+pub fn all() -> Result<(Experiments, Vec<FigureRow>), SettingError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);
     Ok((experiments, rows))

@@ -34,7 +34,6 @@
 mod compare;
 mod content;
 pub mod cube_faces;
-mod error;
 mod experiment;
 pub mod figures;
 mod hall;
@@ -52,7 +51,6 @@ mod world;
 pub use address_recalculation;
 pub use compare::{ArpComparison, ComparedRow, compare, variant_count};
 pub use content::Content;
-pub use error::WalkError;
 pub use experiment::{WalkOutcome, WalkReport};
 pub use hall::{Route, path_of, scaled};
 pub use look::WalkFaces;

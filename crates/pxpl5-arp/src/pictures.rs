@@ -13,7 +13,6 @@ pub(crate) use views::without_lens;
 pub use views::{MemoryViews, difference};
 pub use wires::cuts_svg;
 
-use crate::error::WalkError;
 use crate::figures::{Experiments, gallery, looking_at};
 use crate::look::WalkFaces;
 use crate::settings::{PolicyKind, WalkSettings};
@@ -25,6 +24,7 @@ use address_recalculation::Lens;
 use address_recalculation::priority::Falloff;
 use glam::{DQuat, DVec3};
 use image::RgbImage;
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// A picture, and the name of its file without extension.
@@ -52,8 +52,8 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
-pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, WalkError> {
+/// Returns a [`SettingError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
+pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
     let mut torn = WalkSettings::CELLS.with_cells(experiments.fits[0].cell_m);
@@ -73,14 +73,14 @@ pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, WalkError> {
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if settings are invalid, or if they do not match the cells of the world.
+/// Returns a [`SettingError`] if settings are invalid, or if they do not match the cells of the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
     settings: &WalkSettings,
     m_per_s: f64,
     frames: u64,
-) -> Result<Vec<ArpPicture>, WalkError> {
+) -> Result<Vec<ArpPicture>, SettingError> {
     let eye = at_frames(path, m_per_s, settings.numbers.frame_hz);
     // Choose the frame and the direction of view.
     let is_cut = settings.policy == PolicyKind::Cells && settings.is_segmented;
@@ -125,7 +125,7 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 ///
 /// The faces include the faces of a reference memory, which holds the whole scene. Views are drawn with and without the
 /// lens.
-fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<ArpPicture>, WalkError> {
+fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<ArpPicture>, SettingError> {
     let faces = WalkFaces::of(simulation)?;
     let mut pictures: Vec<ArpPicture> = Vec::new();
     // Unfolded faces of each memory.
@@ -155,7 +155,7 @@ fn tinted(
     settings: &WalkSettings,
     eye: DVec3,
     orientation: DQuat,
-) -> Result<Vec<ArpPicture>, WalkError> {
+) -> Result<Vec<ArpPicture>, SettingError> {
     let mut pictures = Vec::new();
     for (tint, name) in [(Tint::Objects, "objects"), (Tint::Cells, "cells-seen")] {
         world.tint = tint;
@@ -182,7 +182,7 @@ fn best_tear_view(
     torn: &WalkSettings,
     eye: &impl Fn(u64) -> DVec3,
     frames: u64,
-) -> Result<Option<(u64, DQuat)>, WalkError> {
+) -> Result<Option<(u64, DQuat)>, SettingError> {
     let mut simulation = Simulation::new(world, torn)?;
     let mut best = (0, DQuat::IDENTITY, 0);
     for frame in 0..frames {
@@ -223,7 +223,7 @@ fn gaps(
     frame: u64,
     eye: &impl Fn(u64) -> DVec3,
     orientation: DQuat,
-) -> Result<Vec<ArpPicture>, WalkError> {
+) -> Result<Vec<ArpPicture>, SettingError> {
     let mut both = Vec::new();
     // Draw the frame torn, warped and uncut.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
@@ -244,7 +244,7 @@ fn shown<'a>(
     settings: &WalkSettings,
     frames: std::ops::Range<u64>,
     eye: &impl Fn(u64) -> DVec3,
-) -> Result<Simulation<'a>, WalkError> {
+) -> Result<Simulation<'a>, SettingError> {
     let mut simulation = Simulation::new(world, settings)?;
     for frame in frames {
         simulation.frame(eye(frame))?;

@@ -5,7 +5,7 @@ use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
 use pxpl5_arp::pictures::{ArpPicture, of_walk};
 use pxpl5_arp::{
-    ArpReport, PolicyKind, Simulation, SourceKind, Tears, WalkError, WalkFaces, WalkSettings, World, at_frames, walk,
+    ArpReport, PolicyKind, Simulation, SourceKind, Tears, WalkFaces, WalkSettings, World, at_frames, walk,
 };
 use pxpl5_scene::{Scene, builtin};
 use std::collections::BTreeMap;
@@ -282,7 +282,8 @@ fn what_faces_cannot_show_is_refused_by_name() {
     assert!(refused("mig").contains("structures that do not move"));
     assert!(refused("full-screen:3").contains("fixed to the head"));
     let rate = WalkSettings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..CELLS };
-    assert!(matches!(Simulation::new(&WORLD, &rate), Err(WalkError::Rate(_))));
+    let error = Simulation::new(&WORLD, &rate).expect_err("no rate");
+    assert_eq!(&*error.name, "source.triangles_per_s");
     let mut cells = CELLS;
     cells.numbers.falloff_m = 6.0;
     let error = Simulation::new(&WORLD, &cells).expect_err("refused").to_string();

@@ -328,7 +328,7 @@ fn is_forbidden(c: char) -> bool {
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
     let mut chunks = origin(report);
     chunks.push(("complete", report.ends_complete.to_string()));
-    png_bytes(picture, &chunks).map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
+    png_bytes(picture, &chunks).map_err(CliError::failure)
 }
 
 #[cfg(test)]

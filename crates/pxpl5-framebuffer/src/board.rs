@@ -4,9 +4,9 @@ use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
 use crate::seen::{BufferContents, ScannedField};
 use crate::{
-    Faults, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferFault, FrameBufferOutput,
-    FrameBufferStats, Video,
+    Faults, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, FrameBufferStats, Video,
 };
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Context, Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber, RegionPixels};
 use std::collections::VecDeque;
@@ -36,8 +36,8 @@ impl FrameBuffer {
     ///
     /// # Errors
     ///
-    /// Returns a [`FrameBufferConfigError`] with the name of the parameter that is out of range.
-    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, FrameBufferConfigError> {
+    /// Returns a [`SettingError`] with the name of the parameter that is out of range.
+    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, SettingError> {
         config.check()?;
         Ok(Self {
             node,

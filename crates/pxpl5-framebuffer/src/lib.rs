@@ -64,7 +64,6 @@
 mod board;
 mod buffer;
 mod config;
-mod error;
 mod ntsc;
 mod panel;
 mod picture;
@@ -77,7 +76,6 @@ mod timing;
 
 pub use board::FrameBuffer;
 pub use config::FrameBufferConfig;
-pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNumbers};

@@ -1,14 +1,10 @@
 //! The NTSC display: one frame buffer for each eye. All frame buffers scan in lock-step.
 
-use crate::{
-    FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, ScannedField, Video,
-};
+use crate::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, ScannedField, Video};
 use image::RgbImage;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Context, Time};
-use pxpl5_wire::display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
 
@@ -236,16 +232,16 @@ impl DisplayConfig for FrameBufferConfig {
         pictures.clamp(1, Eye::BOTH.len())
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
-        Self::check(self).map_err(refused)
+    fn check(&self) -> Result<(), SettingError> {
+        Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
-        let video = self.video.video().map_err(refused)?;
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+        let video = self.video.video()?;
         let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node)).collect::<Result<Vec<_>, _>>();
         let surfaces = Surface::of_frame_buffers(nodes.len(), video.width(), video.height());
         let context = Context::default();
-        Ok(Box::new(NtscDisplay { video, boards: boards.map_err(refused)?, nodes: nodes.to_vec(), surfaces, context }))
+        Ok(Box::new(NtscDisplay { video, boards: boards?, nodes: nodes.to_vec(), surfaces, context }))
     }
 
     fn boxed(&self) -> Box<dyn DisplayConfig> {
@@ -255,8 +251,4 @@ impl DisplayConfig for FrameBufferConfig {
     fn remember(&mut self, periods: u64) {
         self.fields_kept = periods;
     }
-}
-
-fn refused(error: FrameBufferConfigError) -> DisplayError {
-    DisplayError(error.to_string())
 }

@@ -1,7 +1,6 @@
 //! All timing parameters of the frame buffer.
 
-use crate::error::FrameBufferConfigError;
-use pxpl5_sim::parameters::{MAX, ParameterTable, check};
+use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
 use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
@@ -45,9 +44,13 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// Returns [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found
     /// value.
-    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
+    pub fn check(&self) -> Result<(), SettingError> {
+        self.check_numbers().map_err(|error| error.at("frame buffer"))
+    }
+
+    fn check_numbers(&self) -> Result<(), SettingError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
@@ -55,16 +58,15 @@ impl VideoTiming {
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines))?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
-        Ok(())
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))
     }
 
     /// Returns the video signal that this table describes.
     ///
     /// # Errors
     ///
-    /// The errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
-    pub fn video(&self) -> Result<Video, FrameBufferConfigError> {
+    /// The errors of [`VideoTiming::check`]. Also an error if the period of a field does not fit into a 64-bit time.
+    pub fn video(&self) -> Result<Video, SettingError> {
         self.check()?;
         let numbers = VideoNumbers {
             pixel_ps: self.pixel_ps,
@@ -76,6 +78,11 @@ impl VideoTiming {
             left_blanking: self.left_blanking,
             top_blanking: self.top_blanking,
         };
-        Video::new(numbers).ok_or(FrameBufferConfigError::Clock)
+        Video::new(numbers).ok_or_else(|| {
+            let expected = "pixel_ps x frame_lines x line_pixels below 2^64";
+            SettingError::combination(format_args!(
+                "frame buffer: the period of a field is out of range; expected {expected}"
+            ))
+        })
     }
 }

@@ -8,9 +8,10 @@ use crate::newton;
 use crate::outline::{Outline, SUBPIXELS};
 use crate::screen::{self, ScreenTriangle, SurfaceNormals, VertexColours};
 use crate::touch::Touch;
-use crate::view::{Columns, FromWorld, ViewError};
+use crate::view::{Columns, FromWorld};
 use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// Culling mode, which selects triangles by their winding. Selected triangles are not drawn.
@@ -203,14 +204,15 @@ impl Transform {
     /// Prepares a view of the world for one picture.
     ///
     /// # Errors
-    /// Returns [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
-    pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
+    /// Returns a [`SettingError`] if a matrix contains NaN or an infinity.
+    pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, SettingError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);
         // Reject NaN and infinities here, so that later steps need no test for them.
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
-                return Err(ViewError::NotFinite { matrix });
+                let name = format!("{matrix} matrix");
+                return Err(SettingError::value(&name, "finite numbers", "NaN or infinity"));
             }
         }
         let to_screen = ToScreen::new(&viewport);

@@ -20,8 +20,7 @@ mod store;
 mod trial;
 
 pub use crate::head_names::{
-    MOTIONS, MotionError, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by,
-    walk,
+    MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
 pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::usual_rows;
@@ -29,7 +28,7 @@ pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
-pub use precision::{MAX_SEEDS, Precision, PrecisionError, UntilPrecise};
+pub use precision::{MAX_SEEDS, Precision, UntilPrecise};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareQuery, Comparison, LEAST_SEEDS};
 pub use row::{CauseShare, ComparisonRow, ErrorSpread, PredictorMean};

@@ -1,8 +1,7 @@
 //! The error of studies of many experiments.
 
-use crate::experiment_file::FileError;
-use crate::sweep::SweepError;
-use pxpl5_run::{ExperimentError, HeadError};
+use pxpl5_run::ExperimentError;
+use pxpl5_sim::parameters::{FileError, SettingError};
 use thiserror::Error;
 use tracking::rig::RigError;
 
@@ -13,7 +12,7 @@ use tracking::rig::RigError;
 pub enum StudyError {
     /// A setting is invalid.
     #[error(transparent)]
-    File(#[from] FileError),
+    Setting(#[from] SettingError),
     /// An experiment of the study cannot run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
@@ -60,7 +59,7 @@ pub enum StudyError {
     },
     /// A file of finished rows cannot be read or written.
     #[error(transparent)]
-    Files(#[from] SweepError),
+    File(#[from] FileError),
     /// The folder holds rows of a comparison with other settings.
     #[error("{path}: these rows are of another comparison: {key} was {found}, expected {expected}")]
     OtherSettings {
@@ -95,9 +94,6 @@ pub enum StudyError {
         /// Error of the parser.
         found: String,
     },
-    /// The settings of the tracker are invalid.
-    #[error(transparent)]
-    Tracker(#[from] HeadError),
     /// The pendulum rig gave no measurement: the tracker reported no low point of the pendulum, or the photodiode
     /// detected no bright pixel.
     #[error(transparent)]

@@ -18,14 +18,15 @@ mod search;
 pub use over::{OverLimit, OverQuery, STEPS, Values};
 pub use search::{Hints, Limit, about, most};
 
-use crate::experiment_file::{FileError, Plan, SceneChoice};
+use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
     Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
     TestScene,
 };
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
@@ -60,13 +61,13 @@ impl Model {
     /// # Errors
     ///
     /// Fails in the same cases as [`SceneChoice::load`].
-    pub fn load(choice: SceneChoice) -> Result<Self, FileError> {
+    pub fn load(choice: SceneChoice) -> Result<Self, SettingError> {
         let choice = SceneChoice { triangles: None, ..choice };
         let whole = Arc::new(choice.load_whole()?);
         Ok(Self { choice, whole })
     }
 
-    fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, FileError> {
+    fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, SettingError> {
         let triangles = Some(triangles as usize).filter(|n| *n < self.whole.triangles().len());
         SceneChoice { triangles, ..self.choice.clone() }.prepared(Arc::clone(&self.whole))
     }
@@ -108,7 +109,7 @@ impl LimitQuery {
     /// Returns [`ExperimentError::Config`] if the built-in registry does not contain the pipeline.
     pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
         let registry = crate::registry();
-        let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
+        let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
         Ok(Self { registry, config, pipeline: Arc::new(pipeline), criterion, model: None, level: Level::Transaction })
     }

@@ -26,7 +26,6 @@
 
 mod chunk;
 mod cost;
-mod error;
 mod header;
 mod inputs;
 mod joined;
@@ -45,7 +44,6 @@ mod table;
 pub(crate) use inputs::inputs_of;
 pub(crate) use store::{line_of, lock, opened};
 
-pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
 pub use point::{PointResults, Status, SweepRow, Swept};
@@ -55,8 +53,9 @@ pub use shard::Shard;
 pub use space::{Axis, AxisValues, MAX_POINTS, SweepSpace, leaves};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::Measure;
+use pxpl5_sim::parameters::SettingError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -75,7 +74,7 @@ impl Sweep {
     /// # Errors
     ///
     /// Fails in the same cases as [`ExperimentFile::load`] and [`Sweep::new`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SettingError> {
         Self::new(ExperimentFile::load(path)?)
     }
 
@@ -83,8 +82,8 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the table is missing or invalid.
-    pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
+    /// Returns a [`SettingError`] if the table is missing or invalid.
+    pub fn new(base: ExperimentFile) -> Result<Self, SettingError> {
         let of_file = base.sweep.as_ref();
         let place = of_file.map_or("", |sweep| &sweep.place);
         let key_of = |path: &str, place: &str| base.canonical_key(path, place);

@@ -4,10 +4,11 @@
 use pphigs::FrameView;
 use pxpl5_lab::StudyError;
 use pxpl5_lab::rig::Rig;
-use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record};
+use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use std::sync::{Arc, Mutex};
 use tracking::rig::Measurement;
 use tracking::tracker::TrackerConfig;
@@ -126,7 +127,7 @@ impl Pipeline for Faulty {
         self.inner.layout()
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let views = if self.fault == Fault::StaleViews { stale(&setup.views) } else { Arc::clone(&setup.views) };
         self.inner.load(machine, &Setup { views, ..setup.clone() })
     }

@@ -1,7 +1,7 @@
 //! Names of boards, and descriptions of their events.
 
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -61,13 +61,13 @@ impl fmt::Display for EventDescription {
 }
 
 impl FromStr for Board {
-    type Err = TextError;
+    type Err = SettingError;
 
     /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
-    fn from_str(text: &str) -> Result<Self, TextError> {
-        let refused = TextError::whole("host, ring, gp N, renderer N or display N", text);
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        let refused = SettingError::text("host, ring, gp N, renderer N or display N", text);
         let text = text.to_ascii_lowercase();
         // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());

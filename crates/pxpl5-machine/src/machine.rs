@@ -14,7 +14,7 @@ mod displays;
 
 use crate::agenda::{schedule_outputs, schedule_own};
 use crate::board::{Board, EventDescription};
-use crate::config::{ConfigError, MachineConfig};
+use crate::config::MachineConfig;
 use crate::event::Event;
 use crate::facts::{facts, host_line_facts, mark_facts};
 use crate::host_line::HostLine;
@@ -26,6 +26,7 @@ use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Context, EventQueue, Phase, Time};
 use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
@@ -78,16 +79,15 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if a parameter of the machine or of a display is invalid.
-    pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, ConfigError> {
+    /// Returns [`SettingError`] if a parameter of the machine or of a display is invalid.
+    pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, SettingError> {
         config.check()?;
         // Number the ports first: every board needs its own port number.
         let ports = Ports::plug(config, pictures);
         // Renderers are not elastic: they accept a message only when their FIFO has room.
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
-        let ring =
-            Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let ring = Ring::new(config.ring, ports.count(), elastic).map_err(SettingError::combination)?;
         // Build the boards in the order of their ports.
         let signal = config.ring.signal();
         let host = GpBoard::new(ports.host, config.host.board(), signal);

@@ -8,7 +8,7 @@ use crate::pictures::picture;
 use crate::quantity::Measure;
 use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};
-use pxpl5_sim::parameters::NameError;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].
@@ -23,8 +23,8 @@ pub trait Measured {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no quantity is called `name`.
-    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError>;
+    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError>;
 
     /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
@@ -46,7 +46,7 @@ impl Measured for Outcome {
         Report::of(self)
     }
 
-    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError> {
+    fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError> {
         Ok(Measure::named(name)?.of_outcome(self))
     }
 

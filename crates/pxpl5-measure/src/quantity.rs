@@ -6,7 +6,7 @@ use crate::resource::Resource;
 use crate::summary::summary;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
-use pxpl5_sim::parameters::{NameError, find_named};
+use pxpl5_sim::parameters::{SettingError, find_named};
 use std::fmt;
 use std::str::FromStr;
 
@@ -199,8 +199,8 @@ impl Measure {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no quantity is called `name`.
-    pub fn named(name: &str) -> Result<Self, NameError> {
+    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    pub fn named(name: &str) -> Result<Self, SettingError> {
         find_named("quantity", name, QUANTITIES.iter().map(|quantity| (quantity.name, Self(quantity))))
     }
 
@@ -273,9 +273,9 @@ impl fmt::Display for Measure {
 }
 
 impl FromStr for Measure {
-    type Err = NameError;
+    type Err = SettingError;
 
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Self::named(name)
     }
 }

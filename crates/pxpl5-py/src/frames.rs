@@ -7,7 +7,7 @@ use crate::picture::Picture;
 use crate::stepper::wait;
 use image::RgbImage;
 use pxpl5::ExperimentError;
-use pxpl5::views::{Film, FilmError};
+use pxpl5::views::{Film, PictureError};
 use pyo3::prelude::*;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,7 +19,7 @@ const WAITING: usize = 4;
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Frames {
-    pictures: Mutex<Option<Receiver<Result<RgbImage, FilmError>>>>,
+    pictures: Mutex<Option<Receiver<Result<RgbImage, PictureError>>>>,
     progress: Arc<Progress>,
     checks: PythonFunctions,
 }
@@ -103,9 +103,9 @@ pub(crate) fn film_bytes(
 }
 
 /// Converts an error of a film to an exception.
-fn exception(error: FilmError) -> PyErr {
+fn exception(error: PictureError) -> PyErr {
     match error {
-        FilmError::Run(_) | FilmError::Experiment(ExperimentError::Run { .. }) => failed_run(error),
+        PictureError::Run(_) | PictureError::Experiment(ExperimentError::Run { .. }) => failed_run(error),
         error => wrong_setting(error),
     }
 }

@@ -1,6 +1,7 @@
 //! Layouts: the division of the 208 bits of pixel memory into fields.
 
 use crate::isa::{MEMORY_BITS, Operand};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -33,32 +34,8 @@ pub struct ContextPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// The reason why a plan is not a valid layout.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LayoutError {
-    /// Fields overlap or extend beyond pixel memory. The error text has a drawing of the bit ranges.
-    #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
-    DoesNotFit {
-        /// Name of the rejected layout, from [`ContextPlan::name`].
-        name: &'static str,
-        /// Text drawing of the fields, one line for each field.
-        drawing: String,
-    },
-    /// A field has a width that the commands do not support.
-    #[error("{field} has {found} bits, expected {expected}")]
-    Width {
-        /// Name of the field in [`ContextPlan`].
-        field: &'static str,
-        /// Allowed widths in bits, as text.
-        expected: &'static str,
-        /// Actual width in bits.
-        found: u8,
-    },
-}
-
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
-/// normal. The other 124 bits are scratch memory.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
+/// bits of scratch.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -123,16 +100,20 @@ impl Layout {
     /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// Returns [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory. The text of this error has
-    /// a drawing of the bit ranges. Returns [`LayoutError::Width`] if a field has a wrong width.
-    pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
+    /// Returns a [`SettingError`] if a field has a wrong width, or if fields overlap or extend beyond pixel memory. The
+    /// text of the second error draws the bit ranges.
+    pub fn new(plan: ContextPlan) -> Result<Self, SettingError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
         let bad = conflicts(&plan, &ranges);
         if bad.iter().all(Option::is_none) {
             return Ok(Self(plan));
         }
-        Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
+        Err(SettingError::combination(format_args!(
+            "layout {} does not fit {MEMORY_BITS} bits:\n{}",
+            plan.name,
+            draw(&ranges, &bad)
+        )))
     }
 
     /// Returns the unchecked plan with the fields of the layout.
@@ -201,7 +182,7 @@ impl FieldRange {
     }
 }
 
-fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
+fn check_widths(plan: &ContextPlan) -> Result<(), SettingError> {
     check_width("colour", "24", 24..=24, plan.colour)?;
     check_width("z", "8 to 24", 8..=24, plan.z)?;
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
@@ -213,11 +194,11 @@ fn check_width(
     expected: &'static str,
     allowed: RangeInclusive<u8>,
     found: Operand,
-) -> Result<(), LayoutError> {
+) -> Result<(), SettingError> {
     if allowed.contains(&found.width) {
         return Ok(());
     }
-    Err(LayoutError::Width { field, expected, found: found.width })
+    Err(SettingError::combination(format_args!("{field} has {} bits, expected {expected}", found.width)))
 }
 
 fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
@@ -370,7 +351,7 @@ mod tests {
     #[test]
     fn a_wrong_width_is_named() {
         let plan = ContextPlan { z: Operand::context(24, 28), ..SLATS };
-        let expected = LayoutError::Width { field: "z", expected: "8 to 24", found: 28 };
-        assert_eq!(Layout::new(plan), Err(expected));
+        let error = Layout::new(plan).expect_err("28 bits");
+        assert_eq!(error.to_string(), "z has 28 bits, expected 8 to 24");
     }
 }

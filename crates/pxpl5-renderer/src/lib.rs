@@ -75,7 +75,7 @@ pub use command::{
 pub use contents::MAX_CONTEXTS;
 pub use job::ArrayPool;
 pub use lanes::Lanes;
-pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
+pub use layout::{ContextPlan, FieldRange, Layout};
 pub use look::RendererSnapshot;
 pub use simd::Vectors;
 pub use timing::RendererTiming;

@@ -5,19 +5,17 @@ use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
 use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Aim;
 use std::fmt;
 use std::sync::Arc;
+use tracking::Pose;
 use tracking::motion::{Motion, Still};
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
-use tracking::{Pose, SettingError};
 
 /// A head motion that several parts of a run share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
-
-/// Error for a head that cannot be simulated.
-pub type HeadError = SettingError;
 
 /// Origin of the parameters of a predictor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,13 +98,13 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// [`HeadError`] names the setting, the expected values and the value found.
+    /// [`SettingError`] names the setting, the expected values and the value found.
     pub fn new(
         motion: Arc<dyn Motion + Send + Sync>,
         tracker: TrackerConfig,
         predictor: PredictorKind,
         seed: u64,
-    ) -> Result<Self, HeadError> {
+    ) -> Result<Self, SettingError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
@@ -121,7 +119,7 @@ impl Head {
         tracker: TrackerConfig,
         predictor: PredictorConfig,
         seed: u64,
-    ) -> Result<Self, HeadError> {
+    ) -> Result<Self, SettingError> {
         // Check both configurations now, so that later calls cannot fail.
         predictor.build()?;
         let tracker = TrackerModel::new(tracker)?;
@@ -166,13 +164,11 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// Returns [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
-    pub fn evaluated_at(self, metres: f64) -> Result<Self, HeadError> {
+    /// Returns a [`SettingError`] for a distance that is not within 0.001 to 1,000,000 metres.
+    pub fn evaluated_at(self, metres: f64) -> Result<Self, SettingError> {
         let (low, high) = JUDGED_AT_M;
-        if !(low..=high).contains(&metres) {
-            let what = "distance at which errors are evaluated, m";
-            return Err(HeadError::OutOfRange { what, found: metres, low, high });
-        }
+        let what = "distance at which errors are evaluated, m";
+        SettingError::require((low..=high).contains(&metres), what, format_args!("{low} to {high}"), metres)?;
         Ok(Self { evaluate_at_m: Some(metres), ..self })
     }
 

@@ -1,6 +1,7 @@
 //! Keys: the settings of pipelines that experiment files and the command line can change.
 
-use address_recalculation::{ArpError, Lens};
+use address_recalculation::Lens;
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -47,8 +48,8 @@ impl KeyValues {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Lens`] with the allowed texts.
-    pub fn lens(text: &str) -> Result<KeyValue, ArpError> {
+    /// [`SettingError`] with the allowed texts.
+    pub fn lens(text: &str) -> Result<KeyValue, SettingError> {
         text.parse::<Lens>()?;
         Ok(KeyValue::Text(text.into()))
     }

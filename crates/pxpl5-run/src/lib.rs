@@ -67,7 +67,7 @@ pub use error::ExperimentError;
 pub use estimator::{Cause, Estimator};
 pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, out_of_range, warning_without_code};
 pub use fingerprint::Fingerprint;
-pub use head::{Head, HeadError, HeadPlace};
+pub use head::{Head, HeadPlace};
 pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use keep::Keep;
@@ -83,8 +83,8 @@ pub use pipelines::faces::{
     RotationLatency, SegmentedScene, ShownUpdate,
 };
 pub use pipelines::{
-    Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment,
-    RegionPolicy, RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy,
+    RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
 pub use pxpl5_sim::{DefinedStatistics, KEPT_SAMPLES, Samples, Statistics, number_or_nan};
 pub use pxpl5_wire::display::{Aim, LightTimes};

@@ -9,10 +9,11 @@ use address_recalculation::priority::Cell;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{CodeUse, HostTiming};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
@@ -148,8 +149,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] for a scene that cannot be cut into segments.
-    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
+    /// Returns a [`SettingError`] for a scene that cannot be cut into segments.
+    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, SettingError> {
         Ok(None)
     }
 
@@ -165,8 +166,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
+    /// Returns a [`SettingError`] if the pipeline cannot run on the machine.
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError>;
 
     /// Returns true if the firmware itself computes the time at which a view will be seen.
     fn knows_when_seen(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use crate::reprojection::Reprojection;
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -35,10 +35,10 @@ impl Raster {
 }
 
 impl FromStr for Raster {
-    type Err = TextError;
+    type Err = SettingError;
 
     /// Parses `plain`, `vdrt`, or a device such as `rotation every line, 100 us`.
-    fn from_str(text: &str) -> Result<Self, TextError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         let named = Self::ALL.iter().find(|(name, _)| *name == text).map(|(_, raster)| *raster);
         named.map_or_else(|| text.parse().map(Self::Reprojected), Ok)
     }

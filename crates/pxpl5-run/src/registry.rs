@@ -6,7 +6,7 @@ use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
-use pxpl5_sim::parameters::{NameError, find_named};
+use pxpl5_sim::parameters::{SettingError, find_named};
 use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;
 use std::fmt;
@@ -114,11 +114,11 @@ impl fmt::Display for PipelineEntry {
 }
 
 impl FromStr for PipelineEntry {
-    type Err = NameError;
+    type Err = SettingError;
 
     /// Returns the registry entry of a built-in pipeline, without its closed form. [`Registry::pipeline`] also finds
     /// other pipelines.
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().pipeline(name).copied()
     }
 }
@@ -130,10 +130,10 @@ impl fmt::Display for DisplayEntry {
 }
 
 impl FromStr for DisplayEntry {
-    type Err = NameError;
+    type Err = SettingError;
 
     /// Returns the registry entry of a built-in display. [`Registry::display`] also finds other displays.
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().display(name).copied()
     }
 }
@@ -200,8 +200,8 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no pipeline has the name.
-    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, NameError> {
+    /// [`SettingError`] with the most similar name if no pipeline has the name.
+    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, SettingError> {
         find_named("pipeline", name, self.pipelines.iter().map(|entry| (entry.name, entry)))
     }
 
@@ -209,8 +209,8 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the valid names if no display has the name.
-    pub fn display(&self, name: &str) -> Result<&DisplayEntry, NameError> {
+    /// [`SettingError`] with the valid names if no display has the name.
+    pub fn display(&self, name: &str) -> Result<&DisplayEntry, SettingError> {
         find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }
 

@@ -11,12 +11,12 @@ mod collapse;
 mod quadric;
 mod surface;
 
+use pxpl5_sim::parameters::SettingError;
 use std::ops::Range;
 
 use collapse::{Decimator, Rules};
 use surface::Surface;
 
-use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
@@ -29,13 +29,14 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// Returns [`SceneError::Kept`] if `n` is zero or exceeds the number of primitives.
-    pub fn decimated(&self, n: usize) -> Result<Self, SceneError> {
+    /// Returns a [`SettingError`] if `n` is zero or exceeds the number of primitives.
+    pub fn decimated(&self, n: usize) -> Result<Self, SettingError> {
         let triangles = self.triangles().len();
         let spheres = self.spheres().len();
         let all = triangles + spheres;
         if n == 0 || n > all {
-            return Err(SceneError::Kept { scene: self.name().to_owned(), expected: all, found: n });
+            let name = format!("scene {}", self.name());
+            return Err(SettingError::value(&name, format_args!("1 to {all} triangles to keep"), n));
         }
         if n == all {
             return Ok(self.clone());

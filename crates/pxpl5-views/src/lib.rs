@@ -44,9 +44,9 @@ pub mod trace_export;
 mod updates;
 
 pub use animation::Animation;
-pub use film::{FILM_PERIODS, Film, FilmError, FilmSurfaces};
+pub use film::{FILM_PERIODS, Film, FilmSurfaces};
 pub use frame_time::frame_seconds;
-pub use picture::{PngError, png_bytes};
+pub use picture::{PictureError, png_bytes};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

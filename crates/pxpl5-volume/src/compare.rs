@@ -2,12 +2,12 @@
 //! expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::pictures::{Look, grid};
 use crate::settings::VolumeSettings;
 use image::RgbImage;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{Coverage, Workers};
 
@@ -126,14 +126,14 @@ pub fn variant_count() -> u64 {
 ///
 /// # Errors
 ///
-/// [`VolumeError`] describes the error in a setting or in the scene.
+/// [`SettingError`] describes the error in a setting or in the scene.
 pub fn compare(
     settings: &VolumeSettings,
     scene: &Scene,
     viewpoint: Option<ComparePoint>,
     workers: &dyn Workers,
     finished: impl Fn(u64, u64),
-) -> Result<VolumeComparison, VolumeError> {
+) -> Result<VolumeComparison, SettingError> {
     let all = variants();
     let mut comparison = VolumeComparison {
         schema: "pxpl5-volume-comparison/1",
@@ -177,7 +177,7 @@ impl ComparePoint {
 }
 
 impl Variant {
-    fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, VolumeError> {
+    fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, SettingError> {
         let mut settings = shared.clone();
         // Everything else stays as in the shared settings.
         settings.clip = self.clip;

@@ -14,11 +14,11 @@ pub use drawings::{FigureDrawing, drawings};
 pub use row::{MeasuredScene, VolumeFigures};
 pub use shown::ShownStatement;
 
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use plain::plain;
 use pxpl5_scene::Scene;
 use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::parameters::SettingError;
 use row::order;
 use spatialgl::Workers;
 use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
@@ -29,12 +29,12 @@ use std::sync::Arc;
 ///
 /// # Errors
 ///
-/// Returns [`VolumeError`] if a scene cannot be drawn.
+/// Returns [`SettingError`] if a scene cannot be drawn.
 pub fn all(
     scenes: &[Arc<Scene>],
     workers: &dyn Workers,
     finished: impl Fn(u64, u64),
-) -> Result<VolumeFigures, VolumeError> {
+) -> Result<VolumeFigures, SettingError> {
     let steps = scenes.len() as u64 + 2;
     // Figures that need no scene come first.
     let mut rows = formulas();

@@ -253,7 +253,7 @@ mod tests {
     fn a_wrong_setting_is_refused_in_words() {
         for (settings, said) in [
             ("pipeline=slat", "slats"),
-            ("pipeline=slats\nscene=migg", "the nearest is \"mig\""),
+            ("pipeline=slats\nscene=migg", "there is no scene `migg`; did you mean `mig`?"),
             ("pipeline=slats\nscene=mig\nfields=0", "fields"),
             ("nonsense", "expected path=value"),
             ("pipeline=slats\ndisplay=arp", "arp"),

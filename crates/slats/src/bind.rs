@@ -1,7 +1,7 @@
 //! Assignment of regions to renderers and contexts, and the order in which regions are copied.
 
-use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
 /// A region of one eye's field. One context of one renderer holds this region for the whole run.
@@ -42,15 +42,16 @@ impl Binding {
     ///
     /// # Errors
     ///
-    /// Returns [`SlatsConfigError::TooFewRenderers`] if a renderer would hold more than `contexts` regions.
-    pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
+    /// Returns a [`SettingError`] if a renderer would hold more than `contexts` regions.
+    pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SettingError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
         let all = kinds.iter().flat_map(|(row, eye)| (0..columns).map(move |c| (*eye, RegionId(row * columns + c))));
         let total = kinds.len() * usize::from(columns);
         let expected = total.div_ceil(usize::from(contexts.max(1)));
         if renderers < expected {
-            return Err(SlatsConfigError::TooFewRenderers { found: renderers, expected });
+            let expected = format!("at least {expected} renderers of four contexts");
+            return Err(SettingError::value("Slats binds 20 field regions statically", expected, renderers));
         }
         let regions = all.enumerate().map(|(i, (eye, region))| BoundRegion {
             eye,

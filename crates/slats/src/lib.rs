@@ -43,14 +43,12 @@
 
 mod bind;
 mod config;
-mod error;
 mod host;
 mod processor;
 mod schedule;
 
 pub use bind::{Binding, BoundRegion};
 pub use config::SlatsConfig;
-pub use error::SlatsConfigError;
 pub use host::host;
 pub use processor::{CLUMP, processor};
 pub use schedule::CopySchedule;

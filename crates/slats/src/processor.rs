@@ -3,10 +3,9 @@
 use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
-use pphigs::{
-    FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, ViewWordsError, copy_message, region_messages,
-};
+use pphigs::{FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, copy_message, region_messages};
 use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Received, Stage, Ticket};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyPath, Eye, FieldParity, NodeId, PeriodNumber,
     PictureNumber, Word, swap_request,
@@ -203,7 +202,7 @@ async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backu
 }
 
 impl ProcessorState {
-    fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
+    fn note(&mut self, words: &[Word]) -> Result<(), SettingError> {
         match words {
             [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
             [CLUMPS_ACCEPTED, low, high] => self.note_finished(PeriodNumber::from_words(*low, *high)),

@@ -2,8 +2,8 @@
 //! display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
-use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -36,12 +36,13 @@ impl VertexBuffer {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::NotFinite`] names the first vertex with a coordinate that is infinite or NaN.
-    pub fn new(vertices: Vec<ColouredVertex>) -> Result<Self, SpatialError> {
+    /// [`SettingError`] names the first vertex with a coordinate that is infinite or NaN.
+    pub fn new(vertices: Vec<ColouredVertex>) -> Result<Self, SettingError> {
         for (index, vertex) in vertices.iter().enumerate() {
             for (what, value) in [("position", vertex.position), ("normal", vertex.normal)] {
                 if !value.is_finite() {
-                    return Err(SpatialError::NotFinite { index, what, found: value.to_string() });
+                    let name = format!("vertex {index}");
+                    return Err(SettingError::scene(&name, format_args!("a finite {what}"), value));
                 }
             }
         }
@@ -128,12 +129,14 @@ impl DrawContext {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Range`] if the range exceeds the buffer. Returns [`SpatialError::Setting`] if a point
-    /// size or line width is not above zero, or if the matrix is not finite.
-    pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
+    /// Returns a [`SettingError`] if the range exceeds the buffer, if a point size or line width is not above zero, or if
+    /// the matrix is not finite.
+    pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SettingError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
-            return Err(SpatialError::Range { start: range.start, end: range.end, vertices });
+            let Range { start, end } = range;
+            let reason = format_args!("vertices {start}..{end}: expected a range within 0..{vertices}");
+            return Err(SettingError::combination(reason));
         };
         self.check_state(topology)?;
         let first = self.push_vertices(run);
@@ -145,16 +148,17 @@ impl DrawContext {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Index`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
+    /// [`SettingError`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
     pub fn draw_indexed(
         &mut self,
         buffer: &VertexBuffer,
         indices: &[u32],
         topology: Topology,
-    ) -> Result<(), SpatialError> {
+    ) -> Result<(), SettingError> {
         let vertices = buffer.len();
         if let Some(at) = indices.iter().position(|i| *i as usize >= vertices) {
-            return Err(SpatialError::Index { at, vertices, found: indices[at] });
+            let name = format!("index {at}");
+            return Err(SettingError::scene(&name, format_args!("below {vertices}"), indices[at]));
         }
         self.check_state(topology)?;
         let first = self.push_vertices(&buffer.vertices);
@@ -168,14 +172,14 @@ impl DrawContext {
         std::mem::take(&mut self.recording)
     }
 
-    fn check_state(&self, topology: Topology) -> Result<(), SpatialError> {
-        require(self.model_view.is_finite(), "model_view", "a finite matrix", self.model_view)?;
+    fn check_state(&self, topology: Topology) -> Result<(), SettingError> {
+        SettingError::require(self.model_view.is_finite(), "model_view", "a finite matrix", self.model_view)?;
         let (what, size) = match topology {
             Topology::Points => ("point_size", self.point_size),
             Topology::Lines | Topology::LineStrip => ("line_width", self.line_width),
             _ => return Ok(()),
         };
-        require(size.is_finite() && size > 0.0, what, "a finite size above 0 px", size)
+        SettingError::require(size.is_finite() && size > 0.0, what, "a finite size above 0 px", size)
     }
 
     fn push_vertices(&mut self, vertices: &[ColouredVertex]) -> u32 {

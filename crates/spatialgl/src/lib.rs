@@ -56,7 +56,6 @@ mod command;
 mod context;
 mod curve;
 mod displays;
-mod error;
 mod frame;
 mod halftone;
 mod image;
@@ -83,7 +82,6 @@ pub use clip::{DEFAULT_HYPERBOLIC_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceC
 pub use command::{Combine, CommandBuffer, CommandTriangle};
 pub use context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
 pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
-pub use error::SpatialError;
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;

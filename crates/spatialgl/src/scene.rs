@@ -3,9 +3,9 @@
 
 use crate::command::CommandBuffer;
 use crate::context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
-use crate::error::SpatialError;
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Scene, Sphere};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of facets of a sphere from pole to pole. There are twice as many facets around the sphere.
 const SPHERE_ROWS: u32 = 12;
@@ -19,8 +19,8 @@ pub const SCENE_REACH: f64 = 0.9;
 ///
 /// # Errors
 ///
-/// Returns [`SpatialError`] if the scene has vertices that a recording cannot hold.
-pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
+/// Returns a [`SettingError`] if the scene has vertices that a recording cannot hold.
+pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SettingError> {
     let (centre, reach) = scene.bounding_sphere();
     // A scene of a single point is not scaled.
     let scale = if reach > 0.0 { SCENE_REACH * radius / f64::from(reach) } else { 1.0 };
@@ -41,7 +41,7 @@ pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuff
     Ok(context.present())
 }
 
-fn draw_triangles(context: &mut DrawContext, scene: &Scene) -> Result<(), SpatialError> {
+fn draw_triangles(context: &mut DrawContext, scene: &Scene) -> Result<(), SettingError> {
     let vertices = scene.vertices().iter().map(|v| ColouredVertex {
         position: v.position.as_dvec3(),
         normal: v.normal.as_dvec3(),
@@ -51,7 +51,7 @@ fn draw_triangles(context: &mut DrawContext, scene: &Scene) -> Result<(), Spatia
     context.draw_indexed(&buffer, scene.triangles().as_flattened(), Topology::Triangles)
 }
 
-fn draw_sphere(context: &mut DrawContext, sphere: &Sphere) -> Result<(), SpatialError> {
+fn draw_sphere(context: &mut DrawContext, sphere: &Sphere) -> Result<(), SettingError> {
     let (vertices, indices) =
         tessellated_sphere(sphere.centre.as_dvec3(), f64::from(sphere.radius), SPHERE_ROWS, sphere.colour);
     context.draw_indexed(&VertexBuffer::new(vertices)?, &indices, Topology::Triangles)

@@ -45,7 +45,7 @@
 //! }
 //! let shown_ps = 1_050_000_000_000;
 //! assert!(predictor.predict(shown_ps).is_finite());
-//! # Ok::<(), tracking::SettingError>(())
+//! # Ok::<(), pxpl5_sim::parameters::SettingError>(())
 //! ```
 //!
 //! # Not modelled
@@ -85,7 +85,6 @@ pub mod time;
 pub mod tracker;
 pub mod view;
 
-pub use error::SettingError;
 pub use identity::SettingSink;
 pub use pose::Pose;
 

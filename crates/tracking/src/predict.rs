@@ -13,7 +13,7 @@ mod predicting;
 mod tune;
 
 pub use config::{PredictorConfig, PredictorKind, Start};
-pub use evaluate::{PredictionError, prediction_errors};
+pub use evaluate::{PredictionDeviation, prediction_errors};
 pub use exact::ExactPredictor;
 pub use gate::ReportCounts;
 pub use tune::{Training, Tuned, training_seed, tune};

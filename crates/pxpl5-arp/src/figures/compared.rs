@@ -1,12 +1,12 @@
 //! Comparisons of pictures that must be bit-identical.
 
-use crate::error::WalkError;
 use crate::look::WalkFaces;
 use crate::settings::{SourceKind, WalkSettings};
 use crate::simulation::Simulation;
 use crate::world::World;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of texels along the edge of the compared faces.
 const TEXELS: u32 = 128;
@@ -21,7 +21,7 @@ fn small(settings: &WalkSettings) -> WalkSettings {
 ///
 /// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
 /// memories.
-pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, WalkError> {
+pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     let settings = small(settings);
     // Draw all memories from one position.
     let mut simulation = Simulation::new(world, &settings)?;
@@ -48,7 +48,7 @@ const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
 /// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a
 /// fixed position rotates.
-pub(super) fn turned_differ(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, WalkError> {
+pub(super) fn turned_differ(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);
     let source = SourceKind::Timed { triangles_per_s: STALLED_TRIANGLES_PER_S };

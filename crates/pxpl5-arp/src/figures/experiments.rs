@@ -6,7 +6,6 @@ use super::gallery::gallery;
 use super::interpretations::{Interpretations, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
 use super::rules::Rules;
-use crate::error::WalkError;
 use crate::report::ArpReport;
 use crate::settings::{SourceKind, WalkSettings};
 use crate::walk::{WalkTally, at_frames, walk};
@@ -14,6 +13,7 @@ use crate::world::World;
 use address_recalculation::Lens;
 use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Threshold};
 use glam::{DMat3, DQuat, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
@@ -95,11 +95,11 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
-    pub fn run() -> Result<Self, WalkError> {
+    /// Returns a [`SettingError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
+    pub fn run() -> Result<Self, SettingError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
-        let fit = |rules: Rules| -> Result<CellFit, WalkError> {
+        let fit = |rules: Rules| -> Result<CellFit, SettingError> {
             let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
             Ok(CellFit { rules, cell_m, rates_hz })
         };
@@ -141,7 +141,7 @@ impl Experiments {
 }
 
 /// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
-fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
+fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<SlowRendererResult>, SettingError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
         let settings = WalkSettings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };

@@ -3,12 +3,12 @@
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
-use crate::error::WalkError;
 use crate::look::{WalkFaces, picture, rgb};
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, Lens, LensPicture};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
+use pxpl5_sim::parameters::SettingError;
 
 /// A view of the cube faces of all memories.
 #[derive(Clone, Debug)]
@@ -32,8 +32,8 @@ impl MemoryViews<'_> {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError::Display`] if the lens is invalid.
-    pub fn seen(&self) -> Result<RgbImage, WalkError> {
+    /// Returns a [`SettingError`] if the lens is invalid.
+    pub fn seen(&self) -> Result<RgbImage, SettingError> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
@@ -42,7 +42,7 @@ impl MemoryViews<'_> {
     /// # Errors
     ///
     /// Fails in the same cases as [`MemoryViews::seen`].
-    pub fn memories(&self) -> Result<RgbImage, WalkError> {
+    pub fn memories(&self) -> Result<RgbImage, SettingError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
         let tints =
@@ -62,7 +62,7 @@ impl MemoryViews<'_> {
     /// # Errors
     ///
     /// Fails in the same cases as [`MemoryViews::seen`].
-    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, WalkError> {
+    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, SettingError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
         let bar = 24;

@@ -12,8 +12,8 @@ use clap::Args;
 use pxpl5::sweep::{Header, PointResults, SceneCache, SweepSpace, Swept, leaves};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
-use pxpl5::{FileError, Fingerprint};
-use pxpl5_sim::parameters::{nearest, text_of};
+use pxpl5::{Fingerprint, SettingError};
+use pxpl5_sim::parameters::text_of;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -95,8 +95,9 @@ impl VolumeSweep {
         let mut settings: BTreeMap<String, toml::Value> = leaves(file).into_iter().collect();
         // Settings of the command line override the file.
         for assignment in sets {
-            let (path, value) =
-                assignment.split_once('=').ok_or_else(|| wrong("--set", "PATH=VALUE", "an equals sign", assignment))?;
+            let (path, value) = assignment
+                .split_once('=')
+                .ok_or_else(|| SettingError::value("PATH=VALUE", "an equals sign", assignment).at("--set"))?;
             settings.insert(path.trim().to_owned(), toml::Value::from(value.trim()));
         }
         // Every path must exist before any volume is drawn.
@@ -210,29 +211,19 @@ fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(report, |value, name| value.get(name))
 }
 
-fn wrong(place: &str, key: &str, expected: &str, found: &str) -> FileError {
-    FileError::Value {
-        place: place.to_owned(),
-        key: key.to_owned(),
-        expected: expected.to_owned(),
-        found: found.to_owned(),
-    }
-}
-
-fn measure(value: Option<toml::Value>, place: &str) -> Result<Vec<String>, FileError> {
+fn measure(value: Option<toml::Value>, place: &str) -> Result<Vec<String>, SettingError> {
     let Some(value) = value else { return Ok(MEASURED.map(str::to_owned).to_vec()) };
     let names = value.as_array().and_then(|list| list.iter().map(|name| name.as_str().map(str::to_owned)).collect());
     names
         .filter(|names: &Vec<String>| !names.is_empty())
-        .ok_or_else(|| wrong(place, "measure", "a list of names of the report's numbers", &value.to_string()))
+        .ok_or_else(|| SettingError::value("measure", "a list of names of the report's numbers", &value).at(place))
 }
 
 /// Returns the path of a key, or an error if there is no such key.
-fn known_key(keys: &[String], path: &str, place: &str) -> Result<String, FileError> {
-    let mut all = keys.iter().map(String::as_str).chain(OWN);
-    if all.clone().any(|key| key == path) {
+fn known_key(keys: &[String], path: &str, place: &str) -> Result<String, SettingError> {
+    let all = || keys.iter().map(String::as_str).chain(OWN);
+    if all().any(|key| key == path) {
         return Ok(path.to_owned());
     }
-    let nearest = nearest(path, &mut all).unwrap_or_default().to_owned();
-    Err(FileError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest })
+    Err(SettingError::unknown_path("key", path, all()).at(place))
 }

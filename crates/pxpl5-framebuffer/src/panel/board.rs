@@ -2,10 +2,11 @@
 
 use super::PanelNumbers;
 use image::RgbImage;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::display::{
-    BufferReceipt, Counter, Display, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
-    PixelLight, ScanOrder, Surface,
+    BufferReceipt, Counter, Display, DisplayContext, DisplayEvent, DisplayOutput, DoubleBuffer, PixelLight, ScanOrder,
+    Surface,
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
@@ -35,19 +36,20 @@ pub struct Panel {
 ///
 /// # Errors
 ///
-/// Returns [`DisplayError`] if the number of ports is not a multiple of the number of boards.
+/// Returns [`SettingError`] if the number of ports is not a multiple of the number of boards.
 pub(super) fn build(
     name: &'static str,
     numbers: PanelNumbers,
     nodes: &[NodeId],
-) -> Result<Box<dyn Display>, DisplayError> {
+) -> Result<Box<dyn Display>, SettingError> {
     let boards = nodes.len() / numbers.ports as usize;
     // Every board needs the same number of ports.
     if boards == 0 || !nodes.len().is_multiple_of(numbers.ports as usize) {
         let (ports, found) = (numbers.ports, nodes.len());
-        return Err(DisplayError(format!("{name}.ports: expected a multiple of {ports} nodes, found {found}")));
+        return Err(SettingError::value("ports", format_args!("a multiple of {ports} nodes"), found).in_table(name));
     }
-    let frame = Clock::from_hz(numbers.refresh_hz).ok_or_else(|| DisplayError(format!("{name}.refresh_hz")))?;
+    let frame = Clock::from_hz(numbers.refresh_hz)
+        .ok_or_else(|| SettingError::value("refresh_hz", "1 or more", numbers.refresh_hz).in_table(name))?;
     let [width, height] = [numbers.width as u32, numbers.height as u32];
     let surfaces = Surface::of_frame_buffers(boards, width, height);
     let boards = vec![DoubleBuffer::new(width, height); boards];

@@ -1,9 +1,9 @@
 //! The parameters that all kinds of panels share.
 
 use pxpl5_sim::Span;
-use pxpl5_sim::parameters::{ParameterTable, Value};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use pxpl5_wire::REGION_SIZE;
-use pxpl5_wire::display::{DisplayError, PixelLight, ScanOrder};
+use pxpl5_wire::display::{PixelLight, ScanOrder};
 
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;
@@ -88,10 +88,10 @@ impl PanelNumbers {
     ///
     /// # Errors
     ///
-    /// Returns a [`DisplayError`] with the name of the parameter, the expected range and the found value.
-    pub fn check(&self, table: &str) -> Result<(), DisplayError> {
+    /// Returns a [`SettingError`] with the name of the parameter, the expected range and the found value.
+    pub fn check(&self, table: &str) -> Result<(), SettingError> {
         let wrong = |name: &str, expected: String, found: String| {
-            Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
+            Err(SettingError::value(name, expected, found).in_table(table))
         };
         for (name, number) in [("width", self.width), ("height", self.height), ("refresh_hz", self.refresh_hz)] {
             if number == 0 {

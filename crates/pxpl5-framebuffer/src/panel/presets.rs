@@ -2,9 +2,9 @@
 
 use super::PanelNumbers;
 use super::board::build;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_wire::NodeId;
-use pxpl5_wire::display::{Display, DisplayConfig, DisplayError};
+use pxpl5_wire::display::{Display, DisplayConfig};
 
 pxpl5_sim::parameters::parameter_table! {
     /// The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 pixels at 72 Hz. Each scan shows every line.
@@ -143,12 +143,12 @@ macro_rules! panel {
                 pictures * self.ports as usize
             }
 
-            fn check(&self) -> Result<(), DisplayError> {
-                ParameterTable::check(self).map_err(|error| DisplayError(format!("{}.{error}", $name)))?;
+            fn check(&self) -> Result<(), SettingError> {
+                ParameterTable::check(self).map_err(|error| error.in_table($name))?;
                 PanelNumbers::of(self).check($name)
             }
 
-            fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+            fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
                 DisplayConfig::check(self)?;
                 build($name, PanelNumbers::of(self), nodes)
             }

@@ -2,6 +2,7 @@
 //! also estimates the number of seeds that this precision needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
+use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -70,23 +71,18 @@ impl fmt::Display for Precision {
 }
 
 impl FromStr for Precision {
-    type Err = PrecisionError;
+    type Err = SettingError;
 
     /// Parses a share of the mean (`10%`) or a width in pixels (`0.2px`).
-    fn from_str(text: &str) -> Result<Self, PrecisionError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         let number = |digits: &str| digits.trim().parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
         let share = text.strip_suffix('%').and_then(number).map(|percent| Self::Share(percent / 100.0));
         let pixels = || text.strip_suffix("px").and_then(number).map(Self::Pixels);
-        share.or_else(pixels).ok_or_else(|| PrecisionError { found: text.to_owned() })
+        share.or_else(pixels).ok_or_else(|| {
+            let expected = "a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px)";
+            SettingError::value("", expected, format_args!("`{text}`"))
+        })
     }
-}
-
-/// Error of a text that does not state a precision.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px), found `{found}`")]
-pub struct PrecisionError {
-    /// Text that was found.
-    pub found: String,
 }
 
 #[cfg(test)]

@@ -11,9 +11,10 @@
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
 use crate::error::StudyError;
-use crate::sweep::{ROWS_FILE, SweepError, line_of, lock, opened};
+use crate::sweep::{ROWS_FILE, line_of, lock, opened};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
+use pxpl5_sim::parameters::FileError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -82,7 +83,7 @@ impl CompareStore {
     /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
     /// describes.
     pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, StudyError> {
-        fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
@@ -141,7 +142,7 @@ impl CompareStore {
             let name = format!("{number}-{what}.png");
             let path = self.folder.join(&name);
             let written = picture.save_with_format(&path, image::ImageFormat::Png).map_err(std::io::Error::other);
-            written.map_err(SweepError::io(&path, "cannot be written"))?;
+            written.map_err(FileError::io(&path, "cannot be written"))?;
             Ok::<_, StudyError>(name)
         };
         let should_be = picture.should_be.as_ref().map(|ideal| put("should-be", ideal)).transpose()?;
@@ -181,7 +182,7 @@ impl Line {
         let read = |name: &String| {
             let path = folder.join(name);
             let picture = image::open(&path).map_err(std::io::Error::other);
-            Ok::<_, StudyError>(picture.map_err(SweepError::io(&path, "cannot be read"))?.into_rgb8())
+            Ok::<_, StudyError>(picture.map_err(FileError::io(&path, "cannot be read"))?.into_rgb8())
         };
         let picture = self.picture.map(|files| {
             let should_be = files.should_be.as_ref().map(read).transpose()?;
@@ -195,7 +196,7 @@ impl Line {
 fn whole_lines(path: &Path) -> Result<Vec<u8>, StudyError> {
     let mut bytes = match fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        bytes => bytes.map_err(SweepError::io(path, "cannot be read"))?,
+        bytes => bytes.map_err(FileError::io(path, "cannot be read"))?,
     };
     let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
     bytes.truncate(whole);
@@ -215,7 +216,7 @@ impl Rows {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
             // The first error is the one to report.
             let _ = self.file.set_len(self.end);
-            return Err(SweepError::io(path, "cannot be written")(error).into());
+            return Err(FileError::io(path, "cannot be written")(error).into());
         }
         self.end += line.len() as u64;
         Ok(())

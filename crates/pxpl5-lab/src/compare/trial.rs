@@ -2,10 +2,11 @@
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
 use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -37,7 +38,7 @@ pub(super) struct Trial {
 impl ComparedPipeline {
     /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
     /// seed.
-    pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
+    pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, SettingError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
         for (key, value) in self.settings {

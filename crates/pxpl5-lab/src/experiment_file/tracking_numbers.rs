@@ -1,10 +1,10 @@
 //! Parameters of trackers, predictors and the host's port. An experiment sets these parameters by keys of the form
 //! `tracking.table.name`.
 
-use super::{ExperimentFile, FileError, Setting};
+use super::{ExperimentFile, Setting};
 use crate::compare::tracker_by;
-use pxpl5_machine::{ConfigError, Parameter};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_machine::Parameter;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{SerialRead, TrackerConfig};
 
@@ -60,7 +60,7 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
 }
 
 /// Returns the tables of tracking parameters, with the values that a file sets for a tracker.
-pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
+pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, SettingError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.
     let known = tracker_by(&tables, tracker).ok();
@@ -71,32 +71,31 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
         refuse_facts(path, setting)?;
         if !applies(table, own) && !own.is_empty() {
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
-            return Err(FileError::Head { place: setting.place.clone(), reason });
+            return Err(SettingError::combination(reason).at(&setting.place));
         }
         if let Some(why) = known.as_ref().and_then(|(tracker, _)| without_effect(path, tracker)) {
             let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
-            return Err(FileError::Head { place: setting.place.clone(), reason });
+            return Err(SettingError::combination(reason).at(&setting.place));
         }
         // Each assignment is checked together with the rest of its table.
         let value = file.parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());
-            set.map_err(|error| refused(path, setting, &error))?;
+            set.map_err(|error| refused(path, setting, error))?;
         }
     }
     Ok(tables)
 }
 
-fn refused(path: &str, setting: &Setting, error: &dyn std::error::Error) -> FileError {
+fn refused(path: &str, setting: &Setting, error: SettingError) -> SettingError {
     let table = path.rsplit_once('.').map_or(path, |(table, _)| table);
-    FileError::Head { place: setting.place.clone(), reason: format!("{table}.{error}") }
+    error.in_table(table).at(&setting.place)
 }
 
-fn refuse_facts(path: &str, setting: &Setting) -> Result<(), FileError> {
+fn refuse_facts(path: &str, setting: &Setting) -> Result<(), SettingError> {
     match tracking_parameters().into_iter().find(|parameter| parameter.path == path && parameter.read_only) {
         Some(Parameter { path, info, value, .. }) => {
-            let error = ConfigError::ReadOnly { path, value, origin: info.source };
-            Err(FileError::Config { place: setting.place.clone(), error })
+            Err(SettingError::read_only(&path, value, info.source).at(&setting.place))
         }
         None => Ok(()),
     }

@@ -11,7 +11,7 @@ use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformC
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::CodeUse;
-use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
+use pxpl5_machine::{MachineConfig, PRESETS};
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
@@ -19,7 +19,7 @@ use pxpl5_run::{
 };
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::{ParameterTable, Value};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
 
 /// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.
@@ -142,8 +142,8 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] for a preset or path that does not exist.
-    pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, ConfigError> {
+    /// Returns a [`SettingError`] for a preset or path that does not exist.
+    pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, SettingError> {
         let mut machine = MachineConfig::preset(preset)?;
         for (path, value) in &self.changes {
             // A path with a preset's name applies only to this preset.

@@ -1,8 +1,9 @@
 //! Interpretations of the papers: answers to the questions about Rendering Control that the papers leave open.
 
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::RendererTiming;
 use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
 /// Definition of the latency samples whose mean a paper prints.
@@ -128,8 +129,8 @@ impl Reading {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if the number of kept regions is outside the parameter's limits.
-    pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, ConfigError> {
+    /// Returns a [`SettingError`] if the number of kept regions is outside the parameter's limits.
+    pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, SettingError> {
         if self.kept != Self::USUAL.kept {
             machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
         }

@@ -1,9 +1,9 @@
 //! The header of a sweep's file of rows, which holds all data needed to repeat the sweep.
 
 use super::{Axis, AxisValues, Sweep, SweepSpace, measures};
-use crate::experiment_file::FileError;
 use pxpl5_measure::Measure;
 use pxpl5_run::Fingerprint;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -101,8 +101,8 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns the [`FileError`] of the first point if no point is valid.
-    pub fn header(&self) -> Result<Header, FileError> {
+    /// Returns a [`SettingError`] of the first point if no point is valid.
+    pub fn header(&self) -> Result<Header, SettingError> {
         // The header describes the first valid point.
         let looked_at = self.space.points().min(MAX_POINTS_SEARCHED);
         let mut points = (0..looked_at).map(|point| self.plan(point));

@@ -2,9 +2,10 @@
 
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};
-use crate::experiment_file::{FileError, Plan};
+use crate::experiment_file::Plan;
 use pxpl5_run::Host;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -46,8 +47,8 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the settings of the point are invalid.
-    pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
+    /// Returns a [`SettingError`] if the settings of the point are invalid.
+    pub fn plan(&self, point: u64) -> Result<Plan, SettingError> {
         let mut file = self.base.clone();
         for (path, value) in self.space.settings(point) {
             file.put(&path, value, format!("point {point}"), &self.folder())?;
@@ -60,7 +61,7 @@ impl Sweep {
     /// # Errors
     ///
     /// Fails in the same cases as [`crate::experiment_file::SceneChoice::load`].
-    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, SettingError> {
         self.scenes.load(&plan.scene)
     }
 }

@@ -3,8 +3,9 @@
 use super::point::row;
 use super::points::Points;
 use super::shard::Shard;
-use super::{Store, SweepError, SweepRow, Swept};
+use super::{Store, SweepRow, Swept};
 use crossbeam_channel::{Sender, bounded};
+use pxpl5_sim::parameters::FileError;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -27,13 +28,13 @@ const WAITING_ROWS: usize = 64;
 ///
 /// # Errors
 ///
-/// Returns [`SweepError::Io`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
+/// Returns a [`FileError`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
 pub fn run(
     sweep: &impl Swept,
     store: &mut Store,
     options: RunOptions,
     finished: impl FnMut(&SweepRow),
-) -> Result<(), SweepError> {
+) -> Result<(), FileError> {
     run_stoppable(sweep, store, options, &Arc::default(), finished)
 }
 
@@ -49,7 +50,7 @@ pub fn run_stoppable(
     options: RunOptions,
     stop: &Arc<AtomicBool>,
     mut finished: impl FnMut(&SweepRow),
-) -> Result<(), SweepError> {
+) -> Result<(), FileError> {
     let work = Work {
         sweep,
         shard: options.shard,

@@ -1,7 +1,8 @@
 //! A cache of the scenes that points of a sweep share.
 
-use crate::experiment_file::{FileError, SceneChoice};
+use crate::experiment_file::SceneChoice;
 use pxpl5_scene::{Placement, Scene};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,7 +19,7 @@ impl SceneCache {
     /// # Errors
     ///
     /// Fails in the same cases as [`SceneChoice::load`].
-    pub fn load(&self, choice: &SceneChoice) -> Result<Arc<Scene>, FileError> {
+    pub fn load(&self, choice: &SceneChoice) -> Result<Arc<Scene>, SettingError> {
         // The lock is held while loading, so that no other thread loads the same scene.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (choice.name.clone(), choice.placement == Placement::AsInFile, choice.culled);

@@ -1,6 +1,6 @@
 //! The parameter space of a sweep: axes of values, and points by index.
 
-use crate::experiment_file::FileError;
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
@@ -103,15 +103,16 @@ impl SweepSpace {
     pub fn read(
         sweep: Option<&Value>,
         (place, places): (&str, &BTreeMap<String, String>),
-        key_of: impl Fn(&str, &str) -> Result<String, FileError>,
-    ) -> Result<Self, FileError> {
+        key_of: impl Fn(&str, &str) -> Result<String, SettingError>,
+    ) -> Result<Self, SettingError> {
         let how = "a table [sweep.grid] with lists or ranges of settings";
-        let sweep = sweep.ok_or(FileError::Missing { key: "sweep", how })?;
+        let sweep = sweep.ok_or_else(|| SettingError::missing("sweep", how))?;
         let fault = Fault { sweep: place, places };
         let table = sweep.as_table().ok_or_else(|| fault.value("sweep", "a table", sweep))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            let nearest = pxpl5_sim::parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
-            return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
+            let found = format!("sweep.{key}");
+            let valid = KEYS.map(|key| format!("sweep.{key}"));
+            return Err(SettingError::unknown_path("key", &found, valid).at(fault.place(&found)));
         }
         // Each setting of the grid is an axis. The lists of `together` form one more axis, the seeds the last.
         let mut axes = Vec::new();
@@ -179,20 +180,15 @@ impl Fault<'_> {
         paths.iter().find_map(|path| self.places.get(path)).map_or(self.sweep, String::as_str).to_owned()
     }
 
-    fn text(&self, key: &str, expected: &str, found: &str) -> FileError {
-        let place = self.place(key);
-        FileError::Value { place, key: key.to_owned(), expected: expected.to_owned(), found: found.to_owned() }
+    fn text(&self, key: &str, expected: &str, found: &str) -> SettingError {
+        SettingError::value(key, expected, found).at(self.place(key))
     }
 
-    fn value(&self, key: &str, expected: &str, found: &Value) -> FileError {
+    fn value(&self, key: &str, expected: &str, found: &Value) -> SettingError {
         self.text(key, expected, &found.to_string().chars().take(60).collect::<String>())
     }
 
-    fn unknown(&self, found: &str, nearest: &str) -> FileError {
-        FileError::UnknownKey { place: self.place(found), found: found.to_owned(), nearest: nearest.to_owned() }
-    }
-
-    fn table(&self, table: &Table, key: &str) -> Result<Table, FileError> {
+    fn table(&self, table: &Table, key: &str) -> Result<Table, SettingError> {
         match table.get(key) {
             None => Ok(Table::new()),
             Some(Value::Table(table)) => Ok(table.clone()),
@@ -200,7 +196,7 @@ impl Fault<'_> {
         }
     }
 
-    fn values(&self, path: &str, value: &Value) -> Result<AxisValues, FileError> {
+    fn values(&self, path: &str, value: &Value) -> Result<AxisValues, SettingError> {
         match value {
             Value::Array(list) if !list.is_empty() => Ok(AxisValues::Listed(list.clone())),
             Value::Table(range) => self.range(path, range),
@@ -208,7 +204,7 @@ impl Fault<'_> {
         }
     }
 
-    fn range(&self, path: &str, range: &Table) -> Result<AxisValues, FileError> {
+    fn range(&self, path: &str, range: &Table) -> Result<AxisValues, SettingError> {
         let expected = "whole numbers { from, to, step } with from <= to and step > 0";
         let Some([from, step, last]) = from_step_last(range) else {
             return Err(self.value(path, expected, &Value::Table(range.clone())));
@@ -221,7 +217,7 @@ impl Fault<'_> {
     }
 
     /// Returns an axis whose lists of values change together. All lists must have the same length.
-    fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
+    fn together(&self, table: Table) -> Result<Option<Axis>, SettingError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
             let values = self.values(&path, &value)?;
@@ -237,7 +233,7 @@ impl Fault<'_> {
         Ok(Some(axis).filter(|axis| !axis.paths.is_empty()))
     }
 
-    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, FileError> {
+    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, SettingError> {
         let Some(value) = seeds else { return Ok(None) };
         let Some(count) = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count)) else {
             return Err(self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value));
@@ -246,7 +242,11 @@ impl Fault<'_> {
     }
 
     /// Checks that every path of the axes is a key of the file, and that no two axes set the same key.
-    fn check(&self, axes: &[Axis], key_of: impl Fn(&str, &str) -> Result<String, FileError>) -> Result<(), FileError> {
+    fn check(
+        &self,
+        axes: &[Axis],
+        key_of: impl Fn(&str, &str) -> Result<String, SettingError>,
+    ) -> Result<(), SettingError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
             return Err(self.text("sweep", "at least one setting under [sweep.grid]", "none"));

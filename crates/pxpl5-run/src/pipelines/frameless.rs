@@ -10,9 +10,10 @@ use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -73,8 +74,8 @@ impl Frameless {
         RegionGrid { region_width: self.block, region_height: self.block, ..RegionGrid::FRAME }
     }
 
-    fn order(&self) -> Result<BlockOrder, ConfigError> {
-        let order = RandomOrder::new(self.blocks(), self.seed).map_err(|e| ConfigError::Board(e.to_string()))?;
+    fn order(&self) -> Result<BlockOrder, SettingError> {
+        let order = RandomOrder::new(self.blocks(), self.seed)?;
         Ok(BlockOrder::new(move |step| RegionId(order.pixel(step) as u16)))
     }
 }
@@ -132,10 +133,9 @@ impl Pipeline for Frameless {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         if !(4..=128).contains(&self.block) {
-            let what = "block of frameless rendering, pixels".to_owned();
-            return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
+            return Err(SettingError::limits("block of frameless rendering, pixels", (4, 128), self.block));
         }
         let master = machine.record().ports().gps[0];
         let runs_code = machine.processor(master, Priority::Foreground).runs_code();

@@ -9,9 +9,10 @@ use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, ho
 use pphigs::{Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, NamedTable, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Aim;
 use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
@@ -53,7 +54,7 @@ impl Jitp {
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
-    fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, ConfigError> {
+    fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, SettingError> {
         let schedule =
             DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(self.name(), record, schedule, self.layout(), pixels)
@@ -72,7 +73,7 @@ pub(super) fn config(
     schedule: DrawingSchedule,
     layout: Layout,
     pixels: bool,
-) -> Result<JitpConfig, ConfigError> {
+) -> Result<JitpConfig, SettingError> {
     // The firmware needs the beam times of an interlaced display.
     let ports = record.ports();
     let display = ntsc(record, pipeline)?;
@@ -89,7 +90,7 @@ pub(super) fn config(
         pixels,
         timing: record.config().firmware_table().copied().unwrap_or(JitpTiming::PAPERS),
     };
-    config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+    config.check()?;
     Ok(config)
 }
 
@@ -180,7 +181,7 @@ impl Pipeline for Jitp {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())

@@ -8,9 +8,10 @@ use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
@@ -179,11 +180,11 @@ impl Pipeline for Slats {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         // The configuration also fixes which renderer serves which regions.
-        let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let binding = config.check()?;
         let foreground = Priority::Foreground;
         let views = Arc::clone(&setup.views);
         let reports = Arc::clone(&setup.reports);

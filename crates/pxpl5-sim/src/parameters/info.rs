@@ -1,6 +1,6 @@
 //! Unit, provenance, range and source of a parameter.
 
-use crate::parameters::Value;
+use crate::parameters::{SettingError, Value};
 use serde::{Deserialize, Serialize};
 
 /// The provenance of a parameter's value: printed, calculated or assumed.
@@ -52,4 +52,11 @@ impl ParameterInfo {
             _ => None,
         }
     }
+}
+
+/// Creates the error of a table that has no parameter called `name`. Tables that are written without the macro can also
+/// use this function.
+#[must_use]
+pub fn unknown_parameter(name: &str, infos: &[ParameterInfo]) -> SettingError {
+    SettingError::unknown_path("parameter", name, infos.iter().map(|info| info.name))
 }

@@ -1,8 +1,8 @@
 //! Figures of the paper that are counted in views of the display, or measured in drawn volumes.
 
 use super::printed::{TRIANGLE, display, recording};
-use crate::error::VolumeError;
 use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
@@ -11,7 +11,7 @@ use spatialgl::{
 };
 
 /// Returns all figures of the paper that are counted or measured.
-pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
+pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
     rows.extend(batches(&exact, workers)?);
@@ -26,7 +26,7 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeErr
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
-fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
+fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let published = [
         (SliceClip::UserPlanes, 2.0, "draws of a triangle for a slice with user clip planes"),
         (SliceClip::ShaderPlanes, 1.0, "with shader clip planes"),
@@ -46,7 +46,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
 }
 
 /// Returns a recording of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
-fn small_triangle() -> Result<CommandBuffer, VolumeError> {
+fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
     let buffer = VertexBuffer::new(TRIANGLE.map(corner).to_vec())?;
@@ -57,12 +57,12 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
 
 /// Returns figures D8, P9 and D7. These figures are the numbers of queries and clears for a volume, with and without
 /// batches, and the number of words in a slice.
-fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
+fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
-        render_volume(display, &recording()?, &config, &HostRenderer, workers).map_err(VolumeError::from)
+        render_volume(display, &recording()?, &config, &HostRenderer, workers)
     };
     let by_slice: VolumeStats = drawn(1)?.stats;
     let batched = drawn(Tiling::PAPER.batch)?;

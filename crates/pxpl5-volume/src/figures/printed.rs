@@ -1,8 +1,8 @@
 //! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
-use crate::error::VolumeError;
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::Provenance;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::row;
 use spatialgl::{
@@ -19,7 +19,7 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 const SLICE: usize = 13;
 
 /// Returns all figures of the paper that are measured on single slices.
-pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeError> {
+pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
     let mut rows = boundaries(&exact);
@@ -31,11 +31,11 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, VolumeErr
     Ok(rows)
 }
 
-pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
-    Ok(PerspectaConfig::PAPERS.swept(clip, projection)?)
+pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, SettingError> {
+    PerspectaConfig::PAPERS.swept(clip, projection)
 }
 
-pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
+pub(super) fn recording() -> Result<CommandBuffer, SettingError> {
     let vertices = TRIANGLE.map(|corner| ColouredVertex::new(corner.into(), [255; 3]));
     let buffer = VertexBuffer::new(vertices.to_vec())?;
     let mut context = DrawContext::default();
@@ -43,9 +43,9 @@ pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
     Ok(context.present())
 }
 
-fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, VolumeError> {
+fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, SettingError> {
     let config = VolumeConfig { strobes: Strobes::Mirror, keeps_colours: true, ..VolumeConfig::paper() };
-    Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
+    render_volume(display, &recording()?, &config, &HostRenderer, workers)
 }
 
 /// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
@@ -155,7 +155,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
 
 /// Returns figure P19: the largest shift of a point by the shear at the face of a slice's slab, and the number of
 /// distinct eyes.
-fn jitter() -> Result<Vec<FigureRow>, VolumeError> {
+fn jitter() -> Result<Vec<FigureRow>, SettingError> {
     let clip = SliceClip::Hyperbolic(0.25);
     let wedge = HalfWedge::new(396, 384.0);
     let reach = clip.reach(wedge);
@@ -180,7 +180,7 @@ fn jitter() -> Result<Vec<FigureRow>, VolumeError> {
 }
 
 /// Returns figures D10 and D11: the mean number of planes that contain a point, for points spread evenly over the disc.
-fn means() -> Result<Vec<FigureRow>, VolumeError> {
+fn means() -> Result<Vec<FigureRow>, SettingError> {
     let prism = mean_planes(SliceClip::Prism)?;
     let hyperbola = mean_planes(SliceClip::Hyperbolic(0.25))?;
     let exact = mean_planes(SliceClip::ShaderPlanes)?;
@@ -191,7 +191,7 @@ fn means() -> Result<Vec<FigureRow>, VolumeError> {
     ])
 }
 
-fn mean_planes(clip: SliceClip) -> Result<f64, VolumeError> {
+fn mean_planes(clip: SliceClip) -> Result<f64, SettingError> {
     let display = display(clip, Projection::Orthographic)?;
     let views = &display.views()[..198];
     let points = 20_000;

@@ -2,10 +2,10 @@
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{
     CommandBuffer, DrawContext, HalfWedge, SliceClip, SliceVolume, TieRule, Topology, VertexBuffer, VolumeStats,
@@ -25,7 +25,7 @@ pub struct ShownStatement {
 }
 
 /// Tests all statements. If a statement needs a scene, the test uses the first of `scenes`.
-pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, VolumeError> {
+pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, SettingError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
         let volume = Volume::draw(&plain(), scene, workers)?;
@@ -39,10 +39,10 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
 }
 
 /// Compares the lit pixels of the prism with the lit pixels of the exact clip, in rings of 8 px.
-fn prism(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, VolumeError> {
+fn prism(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
-        Ok::<_, VolumeError>(volume.brightness().lit_voxels)
+        Ok::<_, SettingError>(volume.brightness().lit_voxels)
     };
     let prism = rings(ClipKind::Prism)?;
     let exact = rings(ClipKind::Exact)?;
@@ -106,12 +106,12 @@ fn dilation() -> ShownStatement {
 /// A triangle in a plane perpendicular to the axis, corners in pixels: the third triangle of the specification.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
-fn orthographic(workers: &dyn Workers) -> Result<ShownStatement, VolumeError> {
+fn orthographic(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let fragments = |projection| {
         let vertices = LEVEL.map(|corner| spatialgl::ColouredVertex::new(corner.into(), [255; 3])).to_vec();
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "a level triangle", recording(vertices, &[0, 1, 2])?, workers)?;
-        Ok::<_, VolumeError>(volume.frame.stats.fragments_accepted)
+        Ok::<_, SettingError>(volume.frame.stats.fragments_accepted)
     };
     let along = fragments(ProjectionKind::Orthographic)?;
     let jittered = fragments(ProjectionKind::Jittered)?;
@@ -122,7 +122,7 @@ fn orthographic(workers: &dyn Workers) -> Result<ShownStatement, VolumeError> {
     })
 }
 
-fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Result<CommandBuffer, VolumeError> {
+fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Result<CommandBuffer, SettingError> {
     let buffer = VertexBuffer::new(vertices)?;
     let mut context = DrawContext::default();
     context.draw_indexed(&buffer, indices, Topology::Triangles)?;
@@ -131,13 +131,13 @@ fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Resul
 
 /// Compares the gaps in a displayed sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300
 /// px. Every slice intersects equal facets, so all slices have the same gaps in an orthographic projection.
-fn noise(workers: &dyn Workers) -> Result<ShownStatement, VolumeError> {
+fn noise(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let likeness = |projection| {
         // As many facets around the sphere as slices make the gaps of all slices equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
-        Ok::<_, VolumeError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
+        Ok::<_, SettingError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
     };
     let along = likeness(ProjectionKind::Orthographic)?;
     let jittered = likeness(ProjectionKind::Jittered)?;
@@ -176,7 +176,7 @@ fn limits(volume: &Volume) -> ShownStatement {
     }
 }
 
-fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, VolumeError> {
+fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let mut found = Vec::new();
     for size in [64, 32, 16, 8] {
         let mut settings = plain();

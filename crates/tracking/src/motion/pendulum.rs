@@ -1,11 +1,10 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
 use super::Motion;
 use crate::config as table;
-use crate::error::SettingError;
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 use crate::rotation;

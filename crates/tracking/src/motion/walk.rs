@@ -1,10 +1,11 @@
+use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::Motion;
 use super::synthetic::Synthetic;
-use crate::error::SettingError;
+use crate::error::check;
 use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
@@ -39,16 +40,16 @@ impl Walk {
     /// Returns [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. Fewer than two corners, or
     /// successive corners less than 1 mm apart, are errors too.
     pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
-        SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;
+        check("speed of the walk", m_per_s, -100.0, 100.0)?;
         for coordinate in corners.iter().flat_map(DVec3::to_array) {
-            SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
+            check("coordinate of the path", coordinate, -1e6, 1e6)?;
         }
-        SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
+        check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
         // Sum up the lengths of the straight parts, including the part from the last corner back to the first.
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
-            SettingError::check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
+            check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
             ways.push(ways[i] + leg);
         }
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })

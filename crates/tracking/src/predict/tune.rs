@@ -1,9 +1,9 @@
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
 use super::{PredictorConfig, PredictorKind, Start};
 use crate::config::Filter;
-use crate::error::SettingError;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};

@@ -1,8 +1,9 @@
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 use crate::config::Tables;
-use crate::error::SettingError;
+use crate::error::{check, contradiction};
 use crate::pose::Pose;
 use crate::rotation;
 
@@ -59,10 +60,10 @@ impl MagneticDistortion {
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
         if !(self.transmitter_m.is_finite() && self.towards_metal.try_normalize().is_some()) {
-            return Err(SettingError::Contradiction { what: "magnetic distortion needs a place and a direction" });
+            return Err(contradiction("magnetic distortion needs a place and a direction"));
         }
-        SettingError::check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
-        SettingError::check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
+        check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
+        check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
     }
 }
 

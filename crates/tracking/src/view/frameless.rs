@@ -1,5 +1,6 @@
-use crate::error::SettingError;
+use crate::error::check;
 use crate::random::{bits, stream};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of rounds of the Feistel network. Four rounds with a good mixing function give a good permutation (Luby and
 /// Rackoff 1988).
@@ -26,7 +27,7 @@ impl RandomOrder {
     ///
     /// Returns [`SettingError`] if `n_pixels` is out of range.
     pub fn new(n_pixels: u32, seed: u64) -> Result<Self, SettingError> {
-        SettingError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
+        check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
         let width = n_pixels.next_power_of_two().trailing_zeros().max(2);
         Ok(Self { n_pixels, half_bits: width / 2, odd_bit: width % 2, seed: stream(seed, 5) })
     }

@@ -1,8 +1,7 @@
 use glam::{DVec2, DVec3};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
 use crate::config as table;
-use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::time::seconds;
 
