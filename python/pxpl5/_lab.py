@@ -310,11 +310,15 @@ def compare(
     only: str | Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
+    causes: bool = False,
+    predictors: bool = False,
     settings: Mapping[str, object] | None = None,
     progress: Progress = None,
     **keys: object,
 ) -> Comparison:
-    """Every pipeline with the same settings, a run for each seed: errors in pixels by cause, latencies, and, on demand, limits.
+    """Every pipeline with the same settings, a run for each seed: errors in pixels and latencies.
+
+    ``limits`` adds the largest number of triangles of each row, ``causes`` the error by cause, ``predictors`` the error with every predictor. Each of the three takes longer.
 
     ``fields`` is the length of each run: None for the length of a recording, else 300. ``only`` names the rows that are run; all where it is empty. A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
 
@@ -331,7 +335,7 @@ def compare(
     else:
         numbers = [whole("seeds", seed) for seed in seeds]
     with reporting(progress, "runs") as told:
-        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, told))
+        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, causes, predictors, told))
 
 
 def rig(

@@ -36,7 +36,7 @@ fn folder(name: &str) -> PathBuf {
 #[test]
 fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up() {
     let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--no-limits"];
-    let json = json(&compare(&[arguments.as_slice(), &["--json"]].concat()));
+    let json = json(&compare(&[arguments.as_slice(), &["--causes", "--predictors", "--json"]].concat()));
     assert_eq!(json["seeds"].as_array().map(Vec::len), Some(2));
     let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
     for name in ["rendering-control", "slats", "vdrt", "frameless", "ideal", "jitp-field", "jitp-scanline-racing"] {

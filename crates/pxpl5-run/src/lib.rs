@@ -58,6 +58,7 @@ mod stops;
 mod summary;
 mod sums;
 mod tally;
+mod tunings;
 mod views;
 mod window;
 
@@ -101,6 +102,7 @@ pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
 pub use sums::{FinalResults, ObserverFactory, StreamingObserver};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
+pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 
 /// Compiles and runs the example of the README.

@@ -16,20 +16,36 @@ use tracking::tracker::TrackerConfig;
 /// photodiode. A bench may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed line
-/// if `line` is `None`. The paper does not print the photodiode's position, so the details state the latency under the
-/// first and the last line.
-pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
-    if let Some(line) = line {
-        return under_line(machine, pipeline, line as u32);
+/// The rig's measurements of one run, under the first, the assumed and the last line of the screen.
+#[derive(Clone, Debug)]
+pub(super) struct RigLines {
+    values: [(u32, FigureValue); 3],
+}
+
+impl RigLines {
+    /// Measures the mean latency seen from outside. Also returns true if a full backing store has changed the run.
+    pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
+        let lines = photodiode_lines();
+        let (values, met_full_store) = under_lines(machine, pipeline, lines)?;
+        let mut lines = lines.into_iter();
+        Ok((Self { values: values.map(|value| (lines.next().unwrap_or_default(), value)) }, met_full_store))
     }
-    let [first, assumed, last] = photodiode_lines();
-    let [first, last] = [first, last].map(|line| under_line(machine, pipeline, line).map(|measured| measured.value));
-    let [first, last] = [first?, last?];
-    let measured = under_line(machine, pipeline, assumed)?;
-    let lines = [detail("under the first line", first, "ms"), detail("under the last line", last, "ms")];
-    let details = [lines.to_vec(), measured.details].concat();
-    Ok(FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..measured })
+
+    /// Returns figure 17 with the photodiode on the assumed line. The paper does not print the photodiode's position,
+    /// so the details state the latency under the first and the last line.
+    pub(super) fn figure(&self) -> FigureValue {
+        let [(_, first), (_, assumed), (_, last)] = &self.values;
+        let [first, last] = [first.value, last.value];
+        let lines = [detail("under the first line", first, "ms"), detail("under the last line", last, "ms")];
+        let details = [lines.to_vec(), assumed.details.clone()].concat();
+        FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..assumed.clone() }
+    }
+
+    /// Returns the latency under a line, or `None` if this line was not measured.
+    pub(super) fn under(&self, line: u64) -> Option<FigureValue> {
+        let found = self.values.iter().find(|(measured, _)| u64::from(*measured) == line);
+        found.map(|(_, value)| value.clone())
+    }
 }
 
 /// Returns three possible lines of the photodiode: the first, the assumed and the last.
@@ -40,18 +56,32 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) -> Result<FigureValue> {
-    let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    rig.rig.photodiode_line = line;
-    let measured = rig.measure(machine, Arc::new(pipeline));
-    let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+/// Measures figure 17 with the photodiode on one line.
+pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<FigureValue> {
+    let ([value], _) = under_lines(machine, pipeline, [line as u32])?;
+    Ok(value)
+}
+
+/// Measures figure 17 under some lines in one run. Also returns true if a full backing store has changed the run.
+fn under_lines<const N: usize>(
+    machine: &MachineConfig,
+    pipeline: RenderingControl,
+    lines: [u32; N],
+) -> Result<([FigureValue; N], bool)> {
+    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    let measured = rig.measure_lines(machine, Arc::new(pipeline), lines);
+    let (measured, outcome) = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    Ok((measured.map(|measured| value_of(&measured)), outcome.record().met_full_store()))
+}
+
+fn value_of(measured: &tracking::rig::Measurement) -> FigureValue {
     let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
     let details = vec![
         detail("least", least_s * 1e3, "ms"),
         detail("greatest", greatest_s * 1e3, "ms"),
         detail("inside, to the swap", measured.inside.rendering.mean_s * 1e3, "ms"),
     ];
-    Ok(FigureValue::with(mean_s * 1e3, details))
+    FigureValue::with(mean_s * 1e3, details)
 }
 
 /// Number of seeds of the head motion in figure 18.

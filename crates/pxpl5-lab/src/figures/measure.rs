@@ -1,7 +1,7 @@
 //! The experiment behind each published figure.
 
 use super::applications::{Applications, key_of};
-use super::heads::{self, PHOTODIODE_LINE};
+use super::heads::{self, PHOTODIODE_LINE, RigLines};
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
@@ -12,6 +12,7 @@ use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::CodeUse;
 use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
+use pxpl5_measure::summary;
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
@@ -174,8 +175,14 @@ impl Bench {
         self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    fn summarise(&self, experiment: &Experiment) -> Result<Summary> {
-        summarise(&crate::registry(), &experiment.clone().pixels(Pixels::Off).level(self.level))
+    /// Runs an experiment. Returns true with the summary if the run has met a full backing store, or if that is unknown.
+    fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
+        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level);
+        if self.level == Level::Analytic {
+            return Ok((summarise(&crate::registry(), &experiment)?, true));
+        }
+        let outcome = experiment.run()?;
+        Ok((summary(&outcome), outcome.record().met_full_store()))
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Arc<Summary>> {
@@ -222,9 +229,15 @@ impl Bench {
     /// does not depend on the level of modelling or on the definition of latency samples.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        let key = (self.reading.kept, self.reading.finished, self.changes.clone());
-        let line = self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line);
-        self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
+        // The line does not change the run, so it is no part of the key.
+        let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
+        let key = (self.reading.finished, changes);
+        let pipeline = self.reading.pipeline();
+        let lines = self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, pipeline))?;
+        match self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
+            Some((_, line)) => lines.under(*line).map_or_else(|| heads::under_line(&machine, pipeline, *line), Ok),
+            None => Ok(lines.figure()),
+        }
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
@@ -300,7 +313,13 @@ impl Bench {
         self.applications.summary(key, || self.fly_through_once(&experiment, scene, seed, seeds))
     }
 
-    fn fly_through_once(&self, experiment: &Experiment, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+    fn fly_through_once(
+        &self,
+        experiment: &Experiment,
+        scene: &'static str,
+        seed: u64,
+        seeds: u64,
+    ) -> Result<(Summary, bool)> {
         // At the analytic level the loads of all views are computed once for all seeds.
         if self.level != Level::Analytic {
             return self.summarise(experiment);
@@ -308,7 +327,7 @@ impl Bench {
         let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
         let loads = self.applications.loads((scene, self.reading.culled, seeds, self.frames), of_seeds)?;
         let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
-        Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
+        Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
     }
 
     /// Returns the experiment of a fly-through. Its length allows two display fields per frame (30 Hz). If frames take
