@@ -9,7 +9,7 @@ use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingCo
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
-use tracking::rig::{Latency, PendulumRig};
+use tracking::rig::{Latency, Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
@@ -19,32 +19,39 @@ pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 /// The rig's measurements of one run, under the first, the assumed and the last line of the screen.
 #[derive(Clone, Debug)]
 pub(super) struct RigLines {
-    values: [(u32, FigureValue); 3],
+    measured: [(u32, Arc<RigMeasurement>); 3],
 }
 
 impl RigLines {
-    /// Measures the mean latency seen from outside. Also returns true if a full backing store has changed the run.
+    /// Measures the latency seen from outside. Also returns true if a full backing store has changed the run.
     pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
-        let (values, met_full_store) = under_lines(machine, pipeline, lines)?;
+        let (measured, met_full_store) = under_lines(machine, pipeline, lines)?;
         let mut lines = lines.into_iter();
-        Ok((Self { values: values.map(|value| (lines.next().unwrap_or_default(), value)) }, met_full_store))
+        let measured = measured.map(|measured| (lines.next().unwrap_or_default(), Arc::new(measured)));
+        Ok((Self { measured }, met_full_store))
     }
 
     /// Returns figure 17 with the photodiode on the assumed line. The paper does not print the photodiode's position,
     /// so the details state the latency under the first and the last line.
     pub(super) fn figure(&self) -> FigureValue {
-        let [(_, first), (_, assumed), (_, last)] = &self.values;
-        let [first, last] = [first.value, last.value];
-        let lines = [detail("under the first line", first, "ms"), detail("under the last line", last, "ms")];
-        let details = [lines.to_vec(), assumed.details.clone()].concat();
-        FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..assumed.clone() }
+        let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
+        let lines =
+            [detail("under the first line", first.value, "ms"), detail("under the last line", last.value, "ms")];
+        let details = [lines.to_vec(), assumed.details].concat();
+        let unprinted = Some([first.value.min(last.value), first.value.max(last.value)]);
+        FigureValue { value: assumed.value, details, unprinted }
     }
 
-    /// Returns the latency under a line, or `None` if this line was not measured.
-    pub(super) fn under(&self, line: u64) -> Option<FigureValue> {
-        let found = self.values.iter().find(|(measured, _)| u64::from(*measured) == line);
-        found.map(|(_, value)| value.clone())
+    /// Returns the measurement under the assumed line.
+    pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
+        Arc::clone(&self.measured[1].1)
+    }
+
+    /// Returns the measurement under a line, or `None` if this line was not measured.
+    pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
+        let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
+        found.map(|(_, measured)| Arc::clone(measured))
     }
 }
 
@@ -56,25 +63,26 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-/// Measures figure 17 with the photodiode on one line.
-pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<FigureValue> {
-    let ([value], _) = under_lines(machine, pipeline, [line as u32])?;
-    Ok(value)
+/// Measures the latency with the photodiode on one line.
+pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<RigMeasurement> {
+    let ([measured], _) = under_lines(machine, pipeline, [u32::try_from(line).unwrap_or(u32::MAX)])?;
+    Ok(measured)
 }
 
-/// Measures figure 17 under some lines in one run. Also returns true if a full backing store has changed the run.
+/// Measures the latency under some lines in one run. Also returns true if a full backing store has changed the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
     pipeline: RenderingControl,
     lines: [u32; N],
-) -> Result<([FigureValue; N], bool)> {
+) -> Result<([RigMeasurement; N], bool)> {
     let rig = Rig::assumed(TrackerConfig::optical_ceiling());
     let measured = rig.measure_lines(machine, Arc::new(pipeline), lines);
     let (measured, outcome) = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    Ok((measured.map(|measured| value_of(&measured)), outcome.record().met_full_store()))
+    Ok((measured, outcome.record().met_full_store()))
 }
 
-fn value_of(measured: &tracking::rig::Measurement) -> FigureValue {
+/// Returns the latency of rendering, as figure 17 counts it.
+pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
     let details = vec![
         detail("least", least_s * 1e3, "ms"),

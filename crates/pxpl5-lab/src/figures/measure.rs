@@ -11,7 +11,7 @@ use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformC
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::CodeUse;
-use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
+use pxpl5_machine::{ConfigError, MachineConfig, PRESETS, Preset};
 use pxpl5_measure::summary;
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
@@ -22,6 +22,7 @@ use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{ParameterTable, Value};
 use std::sync::Arc;
+use tracking::rig::Measurement as RigMeasurement;
 
 /// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
@@ -159,6 +160,14 @@ impl Bench {
         Ok(machine)
     }
 
+    /// Returns true if every preset gives the same machine under both settings, and the photodiode is under the same
+    /// line. If nothing but the changed parameters differs, both settings then give the same figures.
+    pub(crate) fn has_machines_of(&self, other: &Self) -> bool {
+        let is_same =
+            |preset: &Preset| self.machine(preset.name).is_ok_and(|one| other.machine(preset.name) == Ok(one));
+        self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
+    }
+
     /// Returns the same settings with another interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
@@ -225,19 +234,38 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line. The rig's measurement
-    /// does not depend on the level of modelling or on the definition of latency samples.
+    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line.
     fn rig(&self) -> Result<FigureValue> {
+        match self.photodiode_line() {
+            Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
+            None => Ok(self.rig_lines()?.figure()),
+        }
+    }
+
+    /// Returns the measurement of the pendulum rig under the line that the settings choose, or under the assumed line.
+    pub(super) fn rig_measurement(&self) -> Result<Arc<RigMeasurement>> {
+        let lines = self.rig_lines()?;
+        let Some(line) = self.photodiode_line() else { return Ok(lines.assumed()) };
+        if let Some(measured) = lines.under(line) {
+            return Ok(measured);
+        }
+        let machine = self.reading.on(self.machine("small-hmd")?)?;
+        heads::under_line(&machine, self.reading.pipeline(), line).map(Arc::new)
+    }
+
+    fn photodiode_line(&self) -> Option<u64> {
+        self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
+    }
+
+    /// Returns the rig's measurements of one run. They do not depend on the level of modelling or on the definition of
+    /// latency samples.
+    fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         // The line does not change the run, so it is no part of the key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
         let key = (self.reading.finished, changes);
         let pipeline = self.reading.pipeline();
-        let lines = self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, pipeline))?;
-        match self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
-            Some((_, line)) => lines.under(*line).map_or_else(|| heads::under_line(&machine, pipeline, *line), Ok),
-            None => Ok(lines.figure()),
-        }
+        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, pipeline))
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
