@@ -25,7 +25,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
     TestScene,
 };
-use pxpl5_scene::{Scene, builtin};
+use pxpl5_scene::{Decimation, Scene, builtin};
 use std::sync::Arc;
 
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
@@ -52,6 +52,8 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
+    /// Decimation of `whole`. All sizes of a search share the first collapses.
+    decimation: Arc<Decimation>,
 }
 
 impl Model {
@@ -63,12 +65,14 @@ impl Model {
     pub fn load(choice: SceneChoice) -> Result<Self, FileError> {
         let choice = SceneChoice { triangles: None, ..choice };
         let whole = Arc::new(choice.load_whole()?);
-        Ok(Self { choice, whole })
+        let decimation = Arc::new(Decimation::new(Arc::clone(&whole)));
+        Ok(Self { choice, whole, decimation })
     }
 
     fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, FileError> {
         let triangles = Some(triangles as usize).filter(|n| *n < self.whole.triangles().len());
-        SceneChoice { triangles, ..self.choice.clone() }.prepared(Arc::clone(&self.whole))
+        let choice = SceneChoice { triangles, ..self.choice.clone() };
+        choice.prepared_by(Arc::clone(&self.whole), |n| self.decimation.decimated(n))
     }
 }
 
