@@ -16,7 +16,7 @@ mod over;
 mod search;
 
 pub use over::{OverLimit, OverQuery, STEPS, Values};
-pub use search::{Hints, Limit, about, most};
+pub use search::{Hints, Limit, about, most, most_triangles};
 
 use crate::experiment_file::{FileError, Plan, SceneChoice};
 use crate::levels::summarise;
@@ -139,11 +139,25 @@ impl LimitQuery {
             progress(tried);
             self.reached(triangles)
         })?;
-        // A limit of zero may mean that the goal cannot be evaluated.
-        if limit.triangles == 0 {
-            self.check_rate()?;
-        }
+        self.check_limit(limit.triangles)?;
         Ok(limit)
+    }
+
+    /// Searches for the largest number of triangles alone. It equals [`Limit::triangles`] of [`search`](Self::search),
+    /// but no sizes above the first miss are tried.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`search`](Self::search).
+    pub fn search_triangles(&self) -> Result<u32, ExperimentError> {
+        let triangles = most_triangles(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        self.check_limit(triangles)?;
+        Ok(triangles)
+    }
+
+    /// Returns an error if a limit of zero means that the goal cannot be evaluated.
+    fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
+        if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
     /// Returns an error if the goal is an update rate and the scene has no measurable one. A display with cube faces

@@ -314,3 +314,25 @@ fn started(record: &Record, frame: &PictureTimes) -> Time {
         .filter(|mark| mark.stage == Stage::Sample && mark.edge == StageEdge::Begin && mark.picture == frame.picture);
     begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_run::RenderingControl;
+
+    /// Compares three photodiodes in one run with three runs of one photodiode each.
+    #[test]
+    fn photodiodes_of_one_run_measure_what_each_measures_alone() {
+        let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
+        let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
+        let lines = [0, 100, 239];
+        let (together, _) = rig.measure_lines(&machine, pipeline.clone(), lines).expect("it shows frames");
+        for (line, together) in lines.into_iter().zip(together) {
+            let rig = Rig { rig: PendulumRig { photodiode_line: line, ..rig.rig }, ..rig.clone() };
+            let alone = rig.measure(&machine, pipeline.clone()).expect("it shows frames");
+            assert_eq!(format!("{alone:?}"), format!("{together:?}"), "line {line}");
+        }
+        let refused = rig.measure_lines(&machine, pipeline, [0, 240]);
+        assert!(matches!(refused, Err(StudyError::Photodiode { lines: 240, found: 240 })), "there are 240 lines");
+    }
+}

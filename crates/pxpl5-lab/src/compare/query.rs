@@ -368,7 +368,7 @@ impl CompareQuery {
         }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
-            row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
+            row.triangles_possible = LimitQuery::of_plan(&plan).search_triangles().ok();
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.

@@ -3,7 +3,6 @@
 
 use super::heads::RigLines;
 use super::measured::{Result, scene_named};
-use crate::limit::Limit;
 use pxpl5_analytic::Load;
 use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;
@@ -78,7 +77,7 @@ pub(crate) struct Applications {
     loads: Places<LoadsKey, Vec<Vec<Load>>>,
     rigs: ByCapacity<RigKey, RigLines>,
     summaries: ByCapacity<String, Summary>,
-    limits: Places<String, Limit>,
+    limits: Places<String, u32>,
 }
 
 /// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing store
@@ -135,7 +134,7 @@ impl Applications {
     }
 
     /// Returns the result of a search for the largest number of triangles. `make` runs the search at the first request.
-    pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
+    pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
         find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
 }
@@ -158,4 +157,54 @@ fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() ->
 
 fn locked<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
     all.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::Reading;
+    use pxpl5_machine::MachineConfig;
+    use pxpl5_run::{Outcome, Pixels};
+
+    /// Runs a scene with a number of kept regions and a rule for finished regions.
+    fn run(scene: &str, kept: u64, finished: FinishedRegions) -> Outcome {
+        let reading = Reading { kept, finished, ..Reading::USUAL };
+        let machine = reading.on(MachineConfig::small_hmd()).expect("in range");
+        let scene = scene_named(scene).expect("built in");
+        Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
+    }
+
+    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has met
+    /// one must be able to differ, or the flag would tell nothing.
+    #[test]
+    fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
+        let (mut shared, mut differing) = (0, 0);
+        for scene in ["full-screen:12", "full-screen:60"] {
+            for finished in FinishedRegions::ALL {
+                let runs: Vec<Outcome> =
+                    [1, 2, 3, 4, 8, 128].into_iter().map(|kept| run(scene, kept, finished)).collect();
+                for (place, one) in runs.iter().enumerate() {
+                    for larger in &runs[place + 1..] {
+                        let is_same = one.record().trace_hash() == larger.record().trace_hash();
+                        assert!(is_same || one.record().met_full_store(), "{scene}, {finished:?}, run {place}");
+                        shared += usize::from(!one.record().met_full_store());
+                        differing += usize::from(!is_same);
+                    }
+                }
+            }
+        }
+        assert!(shared > 5 && differing > 5, "{shared} shared, {differing} differ");
+    }
+
+    #[test]
+    fn a_result_serves_larger_stores_alone_and_only_if_no_store_was_full() {
+        let cache = ByCapacity::<&str, u64>::default();
+        let get = |capacity, met_full_store| {
+            *cache.get("key", capacity, || Ok((capacity, met_full_store))).expect("no run fails")
+        };
+        assert_eq!([get(1, true), get(2, true), get(4, false)], [1, 2, 4]);
+        assert_eq!([get(8, false), get(4, true), get(5, true)], [4; 3], "these stores are as large");
+        assert_eq!([get(1, false), get(2, true), get(3, true)], [1, 2, 3], "these stores are smaller");
+        assert_eq!(*cache.get("other", 8, || Ok((9, true))).expect("no run fails"), 9);
+    }
 }

@@ -392,7 +392,7 @@ impl Bench {
     fn most(&self, preset: &str, pipeline: Slats) -> Result<u32> {
         let query = self.limit_query(preset, pipeline)?;
         let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
-        self.applications.limit(key, || query.search()).map(|limit| limit.triangles)
+        self.applications.limit(key, || query.search_triangles())
     }
 
     fn time_before_copy(&self) -> Result<FigureValue> {
@@ -475,6 +475,24 @@ mod tests {
         let columns = 4.0 * (leg - 1.0) / width;
         let rows = 3.0 * (leg - 1.0) / height;
         (1.0 + columns) * (1.0 + rows) - columns * rows / 2.0
+    }
+
+    /// The end of a range can be the preset's value. A value of one preset alone, or another line of the photodiode, makes
+    /// a difference.
+    #[test]
+    fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
+        let bench = Bench::new(Level::Transaction);
+        let with = |path: &str, value| Bench { changes: vec![(path.to_owned(), value)], ..bench.clone() };
+        let words = MachineConfig::small_hmd().renderer.fifo_words;
+        assert!(bench.has_machines_of(&with("renderer.fifo_words", words)));
+        for (path, value) in [
+            ("renderer.fifo_words", words + 1),
+            ("slats:renderer.fifo_words", words + 1),
+            (PHOTODIODE_LINE, 3),
+            ("no.such_parameter", 1),
+        ] {
+            assert!(!bench.has_machines_of(&with(path, value)), "{path}");
+        }
     }
 
     #[test]
