@@ -77,6 +77,8 @@ def compare(
     only: Sequence[str],
     seeds: Sequence[int],
     limits: bool,
+    causes: bool,
+    predictors: bool,
     progress: Callable[[int, int], object] | None = None,
 ) -> dict[str, Any]: ...
 def figure(id: str, level: str = "transaction", progress: Callable[[int, int], object] | None = None) -> dict[str, Any]: ...

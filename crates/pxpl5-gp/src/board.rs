@@ -119,6 +119,7 @@ impl GpBoard {
             memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
             processor: None,
             vertex_transforms: 0,
+            found_store_full: false,
             message_software: Span::ZERO,
             answer_work: Span::ZERO,
             inbox: VecDeque::new(),
@@ -308,6 +309,13 @@ impl GpBoard {
     #[must_use]
     pub fn vertex_transforms(&self) -> u64 {
         self.shared.borrow().vertex_transforms
+    }
+
+    /// Returns true if a program has decided otherwise because the backing store of a renderer was full
+    /// ([`Gp::note_full_store`]).
+    #[must_use]
+    pub fn found_store_full(&self) -> bool {
+        self.shared.borrow().found_store_full
     }
 
     /// Returns the greatest number of memory bytes that were in use at the same time.

@@ -80,6 +80,8 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices that the programs have transformed since the start of the run.
     pub(crate) vertex_transforms: u64,
+    /// True if a program has decided otherwise because a backing store was full.
+    pub(crate) found_store_full: bool,
     /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
     /// CPU time requested so far for work that answers messages.
@@ -338,6 +340,12 @@ impl Gp {
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
+    }
+
+    /// Records that the program has decided otherwise because the backing store of a renderer was full. The record takes
+    /// no time.
+    pub fn note_full_store(&self) {
+        self.shared.borrow_mut().found_store_full = true;
     }
 
     /// Records, for observers of the run, that a stage begins now. `surface` is the surface (such as the picture of an

@@ -193,7 +193,12 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
         let changes = bench.changes.iter().cloned().chain([(v.path.clone(), *value)]).collect();
-        Bench { changes, ..bench.clone() }.measure(id).map_or(nominal, |measured| measured.value)
+        let moved = Bench { changes, ..bench.clone() };
+        // The end of a range can be the value that all machines have.
+        if bench.has_machines_of(&moved) {
+            return nominal;
+        }
+        moved.measure(id).map_or(nominal, |measured| measured.value)
     })
 }
 

@@ -16,7 +16,7 @@ mod over;
 mod search;
 
 pub use over::{OverLimit, OverQuery, STEPS, Values};
-pub use search::{Hints, Limit, about, most};
+pub use search::{Hints, Limit, about, most, most_triangles};
 
 use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
@@ -25,7 +25,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
     TestScene,
 };
-use pxpl5_scene::{Scene, builtin};
+use pxpl5_scene::{Decimation, Scene, builtin};
 use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 
@@ -53,6 +53,8 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
+    /// Decimation of `whole`. All sizes of a search share the first collapses.
+    decimation: Arc<Decimation>,
 }
 
 impl Model {
@@ -62,14 +64,21 @@ impl Model {
     ///
     /// Fails in the same cases as [`SceneChoice::load`].
     pub fn load(choice: SceneChoice) -> Result<Self, SettingError> {
-        let choice = SceneChoice { triangles: None, ..choice };
         let whole = Arc::new(choice.load_whole()?);
-        Ok(Self { choice, whole })
+        Ok(Self::new(choice, whole))
+    }
+
+    /// Creates the model of a scene that is already loaded. The search ignores the number of triangles in `choice`.
+    #[must_use]
+    pub fn new(choice: SceneChoice, whole: Arc<Scene>) -> Self {
+        let decimation = Arc::new(Decimation::new(Arc::clone(&whole)));
+        Self { choice: SceneChoice { triangles: None, ..choice }, whole, decimation }
     }
 
     fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, SettingError> {
         let triangles = Some(triangles as usize).filter(|n| *n < self.whole.triangles().len());
-        SceneChoice { triangles, ..self.choice.clone() }.prepared(Arc::clone(&self.whole))
+        let choice = SceneChoice { triangles, ..self.choice.clone() };
+        choice.prepared_by(Arc::clone(&self.whole), |n| self.decimation.decimated(n))
     }
 }
 
@@ -136,11 +145,25 @@ impl LimitQuery {
             progress(tried);
             self.reached(triangles)
         })?;
-        // A limit of zero may mean that the goal cannot be evaluated.
-        if limit.triangles == 0 {
-            self.check_rate()?;
-        }
+        self.check_limit(limit.triangles)?;
         Ok(limit)
+    }
+
+    /// Searches for the largest number of triangles alone. It equals [`Limit::triangles`] of [`search`](Self::search),
+    /// but no sizes above the first miss are tried.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`search`](Self::search).
+    pub fn search_triangles(&self) -> Result<u32, ExperimentError> {
+        let triangles = most_triangles(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        self.check_limit(triangles)?;
+        Ok(triangles)
+    }
+
+    /// Returns an error if a limit of zero means that the goal cannot be evaluated.
+    fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
+        if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
     /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube

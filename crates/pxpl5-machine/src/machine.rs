@@ -110,6 +110,7 @@ impl Machine {
                 hash: pxpl5_sim::TraceHash::default(),
                 events: 0,
                 vertex_transforms: 0,
+                met_full_store: false,
                 elapsed: Time::ZERO,
                 processors_used: Vec::new(),
             },
@@ -192,6 +193,8 @@ impl Machine {
         self.finish_pixels();
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
+        self.record.met_full_store = self.record.renderers.iter().any(|board| board.waited_for_room())
+            || self.processors.iter().any(GpBoard::found_store_full);
         self.record.elapsed = self.now;
         self.record.processors_used = self.processors_used(self.now);
         self.record

@@ -25,6 +25,7 @@ pub struct Record {
     pub(crate) hash: TraceHash,
     pub(crate) events: u64,
     pub(crate) vertex_transforms: u64,
+    pub(crate) met_full_store: bool,
     pub(crate) elapsed: Time,
     pub(crate) processors_used: Vec<GpUse>,
 }
@@ -181,5 +182,16 @@ impl Record {
     #[must_use]
     pub const fn vertex_transforms(&self) -> u64 {
         self.vertex_transforms
+    }
+
+    /// Returns true if the capacity of a backing store (`renderer.kept_bits`) has delayed a region, or has changed a
+    /// decision of a program, in the whole run.
+    ///
+    /// If it has not, the same run with larger backing stores has the same trace: every step is the same, because
+    /// nothing else depends on the capacity. Firmware that decides by the capacity must report a full store with
+    /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
+    #[must_use]
+    pub const fn met_full_store(&self) -> bool {
+        self.met_full_store
     }
 }

@@ -88,13 +88,15 @@ pub(crate) fn figures<'py>(
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
-#[pyo3(signature = (settings, only, seeds, limits, progress = None))]
+#[pyo3(signature = (settings, only, seeds, limits, causes, predictors, progress = None))]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
     settings: &Settings,
     only: Vec<String>,
     seeds: Vec<u64>,
     limits: bool,
+    causes: bool,
+    predictors: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut query = CompareQuery {
@@ -102,6 +104,8 @@ pub(crate) fn compare<'py>(
         only,
         seeds,
         limits,
+        causes,
+        predictors,
         pictures: false,
         confidence: pxpl5::compare::CONFIDENCE,
         until: None,

@@ -96,6 +96,8 @@ pub struct Renderer {
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
     stats: RendererStats,
+    /// True if a region has waited for room in the backing store.
+    waited_for_room: bool,
 }
 
 /// A region that a renderer has drawn, with the times of the region's commands.
@@ -171,6 +173,7 @@ impl Renderer {
             sent: None,
             drawn: Vec::new(),
             stats,
+            waited_for_room: false,
         }
     }
 
@@ -322,7 +325,12 @@ impl Renderer {
             .chain(&self.copying)
             .map(|order| u64::from(order.content.words()))
             .sum();
-        if self.storing || held + blocks > self.timing.backing_regions() {
+        if self.storing {
+            return;
+        }
+        // This comparison is the only use of the capacity, so a larger store changes nothing if it never fails.
+        if held + blocks > self.timing.backing_regions() {
+            self.waited_for_room = true;
             return;
         }
         self.storing = true;
@@ -384,6 +392,13 @@ impl Renderer {
         }
         self.transfer_next(context);
         self.store_next(context);
+    }
+
+    /// Returns true if a finished region has waited for room in the backing store. Otherwise the board works the same
+    /// with a larger backing store.
+    #[must_use]
+    pub const fn waited_for_room(&self) -> bool {
+        self.waited_for_room
     }
 
     /// Returns the board's counters.

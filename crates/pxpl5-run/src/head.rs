@@ -3,6 +3,7 @@
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
+use crate::tunings::{Tunings, tuned_once};
 use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
@@ -11,7 +12,7 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 use tracking::motion::{Motion, Still};
-use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
+use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 /// A head motion that several parts of a run share.
@@ -66,6 +67,8 @@ pub struct Head {
     place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
+    /// Cache of tuned predictors that other heads use too.
+    tunings: Option<Arc<Tunings>>,
 }
 
 impl fmt::Debug for Head {
@@ -135,7 +138,14 @@ impl Head {
             place: HeadPlace::Scene,
             reports: None,
             unsupported_parameters: Vec::new(),
+            tunings: None,
         })
+    }
+
+    /// Shares the results of tuning with all heads that use the same cache. The cache changes no result.
+    #[must_use]
+    pub fn sharing_tunings(self, tunings: Arc<Tunings>) -> Self {
+        Self { tunings: Some(tunings), ..self }
     }
 
     /// Replaces the motion. Tracker and predictor stay the same.
@@ -316,16 +326,14 @@ impl Head {
     /// Returns this head with a predictor that is tuned for an interval from a report to the predicted instant. The
     /// interval is in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
-        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
-        let tuned = tuned.expect("checked by Head::new");
+        let tuned = self.tuning(interval_ps);
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
     }
 
     /// Returns this head with the predictor's parameters for orientations tuned for an interval in picoseconds. The
     /// parameters for positions stay the same.
     pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
-        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
-        let Tuned { config: of_turns, training } = tuned.expect("checked by Head::new");
+        let Tuned { config: of_turns, training } = self.tuning(interval_ps);
         // Only the numbers for orientations are taken from the tuned predictor.
         let own = self.predictor;
         let start =
@@ -339,6 +347,14 @@ impl Head {
         // The training for positions stays on record.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
+    }
+
+    fn tuning(&self, interval_ps: u64) -> Tuned {
+        let (motion, tracker) = (self.motion.as_ref(), &self.tracker);
+        match &self.tunings {
+            Some(tunings) => tunings.tuned(motion, tracker, interval_ps, &self.predictor, self.seed),
+            None => tuned_once(motion, tracker, interval_ps, &self.predictor, self.seed),
+        }
     }
 
     /// Returns the predictor's kind and parameters. In an outcome, the parameters are those that the run used.

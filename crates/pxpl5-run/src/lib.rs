@@ -56,6 +56,7 @@ mod stepper;
 mod stops;
 mod summary;
 mod tally;
+mod tunings;
 mod views;
 mod window;
 
@@ -98,6 +99,7 @@ pub use so_far::SoFar;
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
+pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 
 /// Compiles and runs the example of the README.

@@ -5,7 +5,7 @@ use crate::look;
 use crate::pictures::{self, Difference, rgba};
 use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
-use pxpl5_lab::{ExperimentFile, Plan, SceneChoice};
+use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
@@ -137,8 +137,8 @@ impl Session {
     fn fitting_by_runs(&self) -> Option<u64> {
         let whole = Arc::clone(self.stepper.experiment().scene());
         let triangles = u32::try_from(whole.triangles().len()).ok().filter(|triangles| *triangles > 0)?;
-        let choice = SceneChoice { triangles: None, ..self.plan.scene.clone() };
-        let query = LimitQuery { model: Some(Model { choice, whole }), ..LimitQuery::of_plan(&self.plan) };
+        let model = Model::new(self.plan.scene.clone(), whole);
+        let query = LimitQuery { model: Some(model), ..LimitQuery::of_plan(&self.plan) };
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 

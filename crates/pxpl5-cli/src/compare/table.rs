@@ -20,9 +20,12 @@ const COLUMNS: [(&str, &str, usize); 15] = [
     ("90 %", "px", 7),
     ("99 %", "px", 8),
     ("n", "", 8),
-    ("best with", "px", 19),
+    (BEST_WITH, "px", 19),
     ("triangles", "possible", 10),
 ];
+
+/// Name of the column with the best predictor.
+const BEST_WITH: &str = "best with";
 
 /// Width in characters of the column with the pipelines' names.
 const NAME: usize = 24;
@@ -30,19 +33,21 @@ const NAME: usize = 24;
 /// Returns the comparison as text for the terminal.
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
-    let _ = writeln!(text, "\n{}", header());
+    let _ = writeln!(text, "\n{}", header(comparison));
     comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
     text.push_str(&best(comparison));
     text.push_str(&intervals(comparison));
     text.push_str(&imprecise(comparison));
-    text.push_str(&causes(comparison));
+    if comparison.pipelines.iter().any(|row| !row.causes.is_empty()) {
+        text.push_str(&causes(comparison));
+    }
     text.push_str(
         "\nto light: time from the head's pose until the middle of the picture is lit; turn: the same for an orientation that a display with\n\
          faces reads at scan-out; figure 19: sum of two means as in the papers, from the pose to its report and from an eye's TRANSFORM to\n\
          the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: time from the newest measurement to the instant\n\
          for which a picture is drawn; updates: new pictures per second (frameless rendering: passes over all blocks of the screen,\n\
-         docs/results.md); interval: range of the mean; n: evaluated pixels; best with: the predictor with the least error for the first\n\
-         seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
+         docs/results.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with the least error for\n\
+         the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
          a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
@@ -109,10 +114,16 @@ fn heading(comparison: &Comparison) -> String {
     )
 }
 
-fn header() -> String {
-    let names: String = COLUMNS.iter().map(|(name, _, width)| format!(" {name:>width$}")).collect();
-    let units: String = COLUMNS.iter().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
+fn header(comparison: &Comparison) -> String {
+    let shown = || COLUMNS.iter().filter(|(name, ..)| is_shown(comparison, name));
+    let names: String = shown().map(|(name, _, width)| format!(" {name:>width$}")).collect();
+    let units: String = shown().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
+}
+
+/// Returns true if the table has this column. The predictors have a column only if the comparison ran them.
+fn is_shown(comparison: &Comparison, column: &str) -> bool {
+    column != BEST_WITH || comparison.pipelines.iter().any(|row| !row.predictors.is_empty())
 }
 
 /// Returns the name of a row, followed by its marks (symbols that refer to remarks).
@@ -162,7 +173,8 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
         row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
         row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
     ];
-    let cells: String = COLUMNS.iter().zip(values).map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
+    let shown = COLUMNS.iter().zip(values).filter(|((name, ..), _)| is_shown(comparison, name));
+    let cells: String = shown.map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
     format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 

@@ -11,7 +11,7 @@ use crate::experiment_file::{ExperimentFile, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use pxpl5_measure::Showing;
-use pxpl5_run::{Goal, Pixels, WARM_UP_PERIODS};
+use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
@@ -42,6 +42,11 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
+    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated once
+    /// for each cause.
+    pub causes: bool,
+    /// True if each row also runs with every other predictor ([`ComparisonRow::predictors`]).
+    pub predictors: bool,
     /// True if the runs of the first seed compute pixels, for [`ComparisonRow::picture`].
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
@@ -107,6 +112,25 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// Data that all rows of a comparison share.
+struct Common<'a> {
+    scene: Arc<Scene>,
+    tunings: Arc<Tunings>,
+    progress: Progress<'a>,
+}
+
+impl Common<'_> {
+    /// Returns the experiment of a plan, whose head shares its tuning with the other rows.
+    fn experiment(&self, plan: &Plan) -> Experiment {
+        let experiment = plan.experiment(Arc::clone(&self.scene));
+        let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
+        match head {
+            Some(head) => experiment.head(head),
+            None => experiment,
+        }
+    }
+}
+
 impl CompareQuery {
     /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
     /// number of all runs.
@@ -157,6 +181,8 @@ impl CompareQuery {
         let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
         // No further row starts after one could not be stored.
         let is_failed = AtomicBool::new(false);
+        // Rows with the same head and prediction interval share the tuning of the predictor.
+        let common = Common { scene, tunings: Arc::default(), progress };
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
         let pipelines = parallel::map(&compared_pipelines, |contender| {
             if let Some(row) = held(contender) {
@@ -165,9 +191,9 @@ impl CompareQuery {
             if is_failed.load(Ordering::Relaxed) {
                 return Ok(None);
             }
-            let row = self.row(contender, &scene, &progress)?;
+            let row = self.row(contender, &common)?;
             if self.limits {
-                progress.step();
+                common.progress.step();
             }
             let row = match store {
                 Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
@@ -180,8 +206,8 @@ impl CompareQuery {
             schema: "pxpl5-comparison/3",
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
-            scene: scene.name().to_owned(),
-            triangles: scene.triangles().len(),
+            scene: common.scene.name().to_owned(),
+            triangles: common.scene.triangles().len(),
             head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
             hmd: *any.hmd.config(),
             fields: any.fields,
@@ -295,39 +321,28 @@ impl CompareQuery {
         (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
     }
 
-    fn trials(
-        &self,
-        contender: &ComparedPipeline,
-        seeds: &[u64],
-        scene: &Arc<Scene>,
-        progress: &Progress<'_>,
-    ) -> Vec<Result<Trial, String>> {
+    fn trials(&self, contender: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(contender, *seed, scene);
-            progress.step();
+            let trial = self.trial(contender, *seed, common);
+            common.progress.step();
             trial
         })
     }
 
-    fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+    fn trial(&self, contender: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
         let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        contender.trial(&plan, scene, pixels)
+        contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
     /// Runs a row: once for each seed, then with more seeds while the interval of its mean is wider than the query
     /// allows.
-    fn row(
-        &self,
-        contender: &ComparedPipeline,
-        scene: &Arc<Scene>,
-        progress: &Progress<'_>,
-    ) -> Result<ComparisonRow, StudyError> {
+    fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let is_one_motion = !self.shared.has_motion_for_each_seed()?;
-        let mut trials = self.trials(contender, &self.seeds, scene, progress);
+        let mut trials = self.trials(contender, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
@@ -342,20 +357,21 @@ impl CompareQuery {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
                 break (row, shown);
             }
-            progress.add(more as u64);
+            common.progress.add(more as u64);
             let seeds = self.seeds_after(trials.len(), more);
-            trials.extend(self.trials(contender, &seeds, scene, progress));
+            trials.extend(self.trials(contender, &seeds, common));
         };
         if let Some(Ok(first)) = trials.first()
+            && self.predictors
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.dry_run.clone());
+            let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
-            row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
+            row.triangles_possible = LimitQuery::of_plan(&plan).search_triangles().ok();
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.

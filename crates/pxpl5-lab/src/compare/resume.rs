@@ -35,6 +35,8 @@ impl CompareQuery {
         // Options of the comparison are named as on the command line.
         put("--seeds", format!("{:?}", self.seeds));
         put("--limits", self.limits.to_string());
+        put("--causes", self.causes.to_string());
+        put("--predictors", self.predictors.to_string());
         put("--confidence", self.confidence.to_string());
         put("--until-precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
         put("--max-seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));

@@ -103,9 +103,11 @@ pub struct ComparisonRow {
     /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
     /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error.
+    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error. Empty unless the
+    /// query asked for them.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty for the row `ideal`, whose pictures no predictor
+    /// Mean error of the first seed with each predictor. Empty unless the query asked for it, and for the row `ideal`,
+    /// whose pictures no predictor
     /// changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a

@@ -4,8 +4,7 @@ use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
-use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
-use pxpl5_scene::Scene;
+use pxpl5_run::{DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
@@ -47,12 +46,12 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan (checked experiment) of the row. Returns an error as text.
-    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
-        let from = common_window_from(plan.fields);
-        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
-        let outcome = experiment.after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
-        Ok(Trial::of(&outcome, self.showing))
+    /// Runs one experiment of the row. `causes` is true if the error is split by its causes. Returns an error as text.
+    pub(super) fn trial(&self, experiment: Experiment, causes: bool) -> Result<Trial, String> {
+        let from = common_window_from(experiment.length());
+        let outcome =
+            experiment.results_from(from).after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
+        Ok(Trial::of(&outcome, self.showing, causes))
     }
 }
 
@@ -65,7 +64,7 @@ pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
 }
 
 impl Trial {
-    fn of(outcome: &Outcome, showing: Showing) -> Self {
+    fn of(outcome: &Outcome, showing: Showing, causes: bool) -> Self {
         let report = outcome.report();
         // The reference has errors but no times.
         let is_timed = showing != Showing::Ideal;
@@ -78,7 +77,7 @@ impl Trial {
             tracking_and_rendering_ms: tracking_and_rendering_ms(outcome).filter(|_| is_timed),
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
-            causes: ErrorCauses::of(outcome, showing, &errors),
+            causes: if causes { ErrorCauses::of(outcome, showing, &errors) } else { None },
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),

@@ -101,7 +101,7 @@ const COMMON: &[(&str, &str)] = &[
 
 /// Former names of keys, each with the current name.
 const RENAMED: [(&str, &str); 3] =
-    [("head.display", "head.raster"), ("head.judge_at", "head.evaluate_at"), ("display.preset", "display")];
+    [("head.display", "head.raster"), ("head.evaluate_at", "head.evaluate_at"), ("display.preset", "display")];
 
 /// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].

@@ -68,9 +68,20 @@ impl SceneChoice {
 
     /// Returns the scene, reduced to the chosen number of primitives, and with the chosen head motion.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
+        let decimated = whole.clone();
+        self.prepared_by(whole, |n| decimated.decimated(n))
+    }
+
+    /// Returns the scene as [`prepared`](Self::prepared) does. `decimated` reduces the whole scene to a number of
+    /// primitives.
+    pub(crate) fn prepared_by(
+        &self,
+        whole: Arc<Scene>,
+        decimated: impl FnOnce(usize) -> Result<Scene, SettingError>,
+    ) -> Result<Arc<Scene>, SettingError> {
         // A scene with no more primitives than requested is drawn whole.
         let scene = match self.triangles {
-            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(whole.decimated(n)?),
+            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(decimated(n)?),
             _ => whole,
         };
         // The scene's own motion needs no copy of the scene.

@@ -99,7 +99,12 @@ impl Measurement {
         let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
         let values = parallel::map(&ends, |end| {
             let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();
-            (self.measure)(&Bench { changes, ..bench.clone() }).map_or(nominal, |measured| measured.value)
+            let moved = Bench { changes, ..bench.clone() };
+            // The end of a range can be the value that all machines have.
+            if bench.has_machines_of(&moved) {
+                return nominal;
+            }
+            (self.measure)(&moved).map_or(nominal, |measured| measured.value)
         });
         let bounds = values.into_iter().fold([nominal; 2], |[low, high], value: f64| [low.min(value), high.max(value)]);
         (!ends.is_empty()).then_some(bounds)

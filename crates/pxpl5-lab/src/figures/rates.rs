@@ -4,14 +4,11 @@
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::{Bench, PHOTODIODE_LINE, Reading};
-use crate::rig::Rig;
 use i860::{Cpu, Ram, RunEnd, assemble};
 use pphigs::Shading;
 use pxpl5_gp::Stage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl};
-use std::sync::Arc;
-use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Peak rates";
 
@@ -21,19 +18,30 @@ more tuning, and he stated neither the size of the machine nor the size of the t
 The intervals set one parameter at a time to both ends of its range. The varied parameters are the depth of the renderers' FIFO, the channels \
 of a sender, and the channels for messages to FIFOs. The times of a triangle on a processor and on a renderer also vary. All runs use events.";
 
-/// Paths of the parameters without a published value that limit the machine's triangle rate.
-const OF_TRIANGLES: &[&str] = &[
+/// Parameters that limit the machine's triangle rate with Gouraud shading. Another parameter has the time of a Phong
+/// triangle on a renderer.
+const OF_GOURAUD: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
     "ring.fifo_channels",
     "gp.triangle_ns",
     "renderer.triangle_clocks",
+];
+
+/// Parameters that limit the machine's triangle rate with Phong shading.
+const OF_PHONG: &[&str] = &[
+    "renderer.fifo_words",
+    "ring.source_channels",
+    "ring.fifo_channels",
+    "gp.triangle_ns",
     "renderer.phong_triangle_clocks",
 ];
 
-/// Paths of the parameters that limit the triangle rate of a single renderer.
-const OF_RENDERER: &[&str] =
-    &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
+/// Paths of the parameters that limit the triangle rate of a single renderer, with Gouraud and with Phong shading.
+const OF_RENDERER: [&[&str]; 2] = [
+    &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.shade_clocks"],
+    &["renderer.fifo_words", "renderer.phong_triangle_clocks", "renderer.shade_clocks"],
+];
 
 const LEECH: (&str, &str) = ("Leech 1991", "whole machine");
 
@@ -56,7 +64,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "large", Shading::Gouraud),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_GOURAUD,
         },
         Measurement {
             figure: free(
@@ -67,7 +75,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "large", Shading::Phong),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_PHONG,
         },
         Measurement {
             figure: free(
@@ -78,7 +86,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "design-maximum", Shading::Phong),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_PHONG,
         },
     ]
 }
@@ -97,7 +105,7 @@ fn of_boards() -> Vec<Measurement> {
                 of_array,
             ),
             measure: |bench| renderer_rate(bench, Shading::Gouraud),
-            moved_by: OF_RENDERER,
+            moved_by: OF_RENDERER[0],
         },
         Measurement {
             figure: free(
@@ -108,7 +116,7 @@ fn of_boards() -> Vec<Measurement> {
                 of_array,
             ),
             measure: |bench| renderer_rate(bench, Shading::Phong),
-            moved_by: OF_RENDERER,
+            moved_by: OF_RENDERER[1],
         },
         Measurement {
             figure: free(
@@ -192,14 +200,7 @@ fn processor_rate(bench: &Bench) -> Result<FigureValue> {
 }
 
 fn rig_total(bench: &Bench) -> Result<FigureValue> {
-    let machine = bench.reading.on(bench.machine("small-hmd")?)?;
-    let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    // The photodiode's line may be varied by the bench.
-    if let Some((_, line)) = bench.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
-        rig.rig.photodiode_line = u32::try_from(*line).unwrap_or(u32::MAX);
-    }
-    let measured = rig.measure(&machine, Arc::new(bench.reading.pipeline()));
-    let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let measured = bench.rig_measurement()?;
     let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean * 1e3);
     let details = vec![detail("tracking", tracking, "ms"), detail("rendering", rendering, "ms")];
     Ok(FigureValue::with(measured.outside.total.mean * 1e3, details))
