@@ -92,8 +92,8 @@ impl Video {
         &self.timing
     }
 
-    /// Returns the number of scan lines between time zero and line `y` of a field. The half line at the start of an odd
-    /// field is blanked.
+    /// Returns the number of scan lines between time zero and line `y` of a field. An odd field begins with a blanked
+    /// half line, so its first whole line begins half a line later.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {

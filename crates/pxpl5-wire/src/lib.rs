@@ -37,7 +37,7 @@ pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;
 
-/// Greatest length of a message in words. The value is derived: a region of a field has 15 x 1,024 pixels.
+/// Greatest length of a message in words. The value is derived: a region of a field has 128 x 120 = 15 x 1,024 pixels.
 pub const MAX_MESSAGE_WORDS: u32 = 1024;
 
 /// Width and height of a renderer's pixel array, in pixels (F89).
