@@ -38,12 +38,13 @@
 //!
 //! - TRANSFORM of the whole list stores commands and their bounding boxes, or the positions of triangles at the start
 //!   and the end of the field.
-//! - The triangles of a strip are interpolated between both positions. Such a strip begins a separate pass with the
-//!   interpolated matrices.
+//! - For a strip between two views, code interpolates the triangles between both positions. The strip begins with a
+//!   separate pass that uses the interpolated matrices.
 //! - Code finds the primitives in a strip or block by their bounding boxes, and sends them like the bin of a region.
 //! - Code assembles the master's orders.
 //!
-//! With i860 code, the lead time of a field and the number of blocks in a batch are constants.
+//! With i860 code, the time from the order of a field to the field's first strip is a constant. The number of blocks in
+//! a batch is a constant, too.
 //!
 //! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip),
 //! transforms shared among slaves, Phong shading. Frameless rendering draws square blocks, because a message for a

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// The position (x, y) is the corner of a pixel. Code that computes the coefficients must therefore add the change of
-/// the value from the corner to the centre of a pixel to `c`. This change is `(a + b) / 2`.
+/// The value at (x, y) applies to the centre of the pixel. Code that computes the coefficients must therefore include
+/// the offset from a pixel's corner to its centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
     /// Increase of the value from one pixel to the next one on the right.

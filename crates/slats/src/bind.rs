@@ -89,7 +89,7 @@ impl Binding {
     }
 }
 
-/// Reorders regions so that left and right eye alternate while both eyes have regions left. The first region stays
+/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The region that was first stays
 /// first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };

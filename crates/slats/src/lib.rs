@@ -26,8 +26,8 @@
 //! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): like split, but into the buffer that is not shown.
 //!   If a field's top regions are not ready at its retrace, the last complete field of the same lines is shown again.
 //!   The late field is shown at the next retrace of its lines.
-//! - Without a backup buffer, a field that is late at its retrace is shown as far as it is complete. The GPs continue
-//!   with the field that begins at the next retrace.
+//! - Without a backup buffer (schedules whole and split), a late field is shown at its retrace with the regions that
+//!   are ready. The GPs continue with the field that begins at the next retrace.
 //!
 //! If there are n GPs, each GP holds every n-th primitive. The first GP sends the copy commands when all other GPs have
 //! reported that their last clump was accepted.
