@@ -72,7 +72,7 @@ impl VolumeSpace {
         Ok(Self { title, measure, settings, axes, points })
     }
 
-    /// Returns the settings that vary in the sweep, with their values at a point.
+    /// Returns the settings that vary in the sweep, with their values at point `point` of the parameter space.
     pub(super) fn of_point(&self, point: u64) -> BTreeMap<String, Value> {
         let mut rest = point;
         let mut settings = BTreeMap::new();
