@@ -17,8 +17,8 @@ const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 /// Largest deviation, in subpixels, between a straight line and the path of a triangle's corner on the screen. The path
 /// is curved if positions are interpolated in eye space.
 ///
-/// The limit is 8 pixels. A head that turns by 10 degrees during a field causes 5 pixels, and real heads do not turn so
-/// fast.
+/// The limit is 8 pixels. A head that turns by 10 degrees during a field causes a deviation of 5 pixels, and real heads
+/// do not turn so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
 /// A rectangle of pixels. `across` has its first and last column, and `lines` has its first and last line of the frame.
@@ -202,8 +202,8 @@ impl DrawnList {
     /// Returns the work of interpolating the primitives near the given windows. Returns `None` if there is only one
     /// view.
     ///
-    /// Both last parameters are parts of the board's memory. The part `ends` holds the triangles of both views, and the
-    /// part `commands` receives the commands of the interpolated primitives.
+    /// The last parameter has two parts of the board's memory, `ends` and `commands`. The part `ends` holds the
+    /// triangles of both views. The part `commands` receives the commands of the interpolated primitives.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,

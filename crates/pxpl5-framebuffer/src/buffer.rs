@@ -94,7 +94,8 @@ impl Buffer {
     }
 
     /// Returns the number of lines of the region with index `older` that were never shown completely. The region with
-    /// index `newer` fills the same pixels. It overwrote these lines before the beam had shown all of their pixels.
+    /// index `newer` fills the same pixels. Region `newer` overwrote these lines before the beam had shown all of their
+    /// pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })

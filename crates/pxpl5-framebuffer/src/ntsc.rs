@@ -168,8 +168,8 @@ impl Display for NtscDisplay {
 /// the two fields before this field. The lines of a missing field are black.
 ///
 /// The screen shows the current field above the beam. Below the beam, the screen still shows the lines that were
-/// scanned two fields earlier. The lines between them belong to the previous field. The model's phosphor does not fade,
-/// so each line stays until the beam returns.
+/// scanned two fields earlier. Every second line, between these lines, belongs to the previous field. The model's
+/// phosphor does not fade, so each line stays until the beam returns.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);

@@ -160,7 +160,8 @@ impl ScannedLateRegion {
     }
 }
 
-/// The contents of a whole buffer. Its pixels are computed when they are read, and a clone is cheap.
+/// The contents of one of the two pixel buffers of a board, with both fields. The pixels are computed when they are
+/// read, and a clone is cheap.
 #[derive(Clone, Debug)]
 pub struct BufferContents {
     pub(crate) video: Video,

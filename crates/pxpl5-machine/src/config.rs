@@ -106,7 +106,7 @@ pub enum ConfigError {
         /// The valid path that is most similar to the requested one.
         nearest: String,
     },
-    /// The parameter is a fixed property of a chip. Programs can read it but not set it.
+    /// The parameter is a fixed property of a chip. Users can read the parameter but cannot set it.
     #[error("{path} is {value} in every machine ({origin}); it is listed, but cannot be set")]
     ReadOnly {
         /// Path of the parameter.

@@ -29,8 +29,8 @@ pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
 /// Returns the number that stands for a surface in the trace hash. The number 2 stands for no surface. The third
 /// surface and all later surfaces therefore have their own number plus 1.
 ///
-/// These numbers come from versions with at most two surfaces. They must not change, so that old trace hashes remain
-/// valid.
+/// These numbers come from versions with at most two surfaces. The numbers must not change, so that old trace hashes
+/// remain valid.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

@@ -67,8 +67,8 @@ struct Contexts {
 
 /// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is idle if only displays, host lines and clocks had events since the previous tick, and only they have
-/// pending events.
+/// A tick is idle if only displays, host lines and clocks had events since the previous tick, and no other part of the
+/// machine has a pending event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Number of events of the first graphics processor that each tick causes: the signal of the tick, and a poll of the

@@ -40,7 +40,7 @@ pub struct Swap {
     pub number: u64,
     /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
-    /// The buffer shown from this swap on. It can be the buffer that was shown before.
+    /// The buffer shown from this swap on. This buffer can be the same buffer as before the swap.
     pub buffer: u8,
 }
 

@@ -25,7 +25,7 @@ pub enum Body {
     Commands(CommandList),
     /// Pixels of a part of a region, sent to a frame buffer.
     Pixels(RegionPixels),
-    /// Words sent from program to program. The firmware defines their meaning.
+    /// Words sent from program to program. The firmware defines the meaning of the words.
     Words(Arc<[Word]>),
 }
 

@@ -6,9 +6,10 @@
 //!                                       +--> what a surface shows in a period, and when each of its pixels lights
 //! ```
 //!
-//! A display has three parts. Its *ports* receive messages from the ring. Its *clock* ticks at each retrace, update of
-//! cube faces, or strobe. Its *surfaces* are visible: an eye's picture, a face of a cube, or a slice of a volume. A
-//! *period* is the time from one tick to the next.
+//! A display has ports, a clock and surfaces. The *ports* receive messages from the ring. The *clock* ticks at each
+//! retrace, at each update of cube faces, or at each strobe, depending on the kind of display. The *surfaces* are
+//! visible: an eye's picture, a face of a cube, or a slice of a volume. A *period* is the time from one tick to the
+//! next.
 //!
 //! The machine owns any number of displays and uses only this interface. The first display is the machine's sync
 //! generator. The machine passes the ticks of the first display to the first graphics processor. The length of a run is

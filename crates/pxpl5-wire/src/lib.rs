@@ -10,9 +10,9 @@
 //! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: the counts of periods, pictures and views;
 //! - [`RegionGrid`]: the division of a picture into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*: their words are computed only when a picture is read. A message always contains its length and
-//! the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a SIMD array
-//! takes the same number of cycles for all data.
+//! Bodies are *lazy*: the words of a body are computed only when a picture is read. A message always contains its
+//! length and the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a
+//! SIMD array takes the same number of cycles for all data.
 //!
 //! **Not modelled:** routing headers and check words. Instead, the ring adds a fixed overhead to each message.
 //!

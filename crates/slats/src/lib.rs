@@ -34,10 +34,10 @@
 //!
 //! **Not modelled:** loading of the primitives at initialization.
 //!
-//! Assumed: renderers with an odd index begin a split copy with the right eye, so that copies to both frame buffers
-//! start at the same time. If all renderers began with the left eye, ten regions would take the time of six regions
-//! instead of the published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the
-//! time of 11 regions, as published.
+//! Assumed: renderers with an odd index begin a split copy with the right eye. Copies to both frame buffers then start
+//! at the same time. If all renderers began with the left eye, ten regions would take the time of six regions instead
+//! of the published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the time of 11
+//! regions, as published.
 //!
 //! Sources: TR94, I3D95.
 
