@@ -16,9 +16,9 @@ use thiserror::Error;
 /// the end of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
-    /// Interpolates the vertex's screen positions, after the division by depth.
+    /// Interpolates the screen positions of vertices, after the division by depth.
     Screen,
-    /// Interpolates the vertex's eye-space positions, before the division by depth.
+    /// Interpolates the eye-space positions of vertices, before the division by depth.
     View,
 }
 

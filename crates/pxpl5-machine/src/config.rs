@@ -26,7 +26,7 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work. Used if the processors do not execute i860 code.
+    /// Times of the graphics processors' work. Runs without i860 code use these times.
     pub gp: GpTiming,
     /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
     /// from `gp` instead.
@@ -150,7 +150,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` marks all of them as fixed.
+    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` states if all these parameters
+    /// are fixed properties of a chip.
     pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
         table.entries().into_iter().map(move |Entry { info, value }| {
             let path = format!("{prefix}.{}", info.name);

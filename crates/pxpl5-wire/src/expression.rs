@@ -35,7 +35,7 @@ impl Linear {
 /// widest vector register of host processors.
 pub const LANES: usize = 8;
 
-/// The linear expressions of [`LANES`] triangles, stored by coefficient.
+/// The linear expressions of [`LANES`] triangles, with one array for each coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinearLanes {
     /// Coefficient [`Linear::a`] of each triangle.
