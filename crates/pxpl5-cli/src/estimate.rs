@@ -209,9 +209,9 @@ mod tests {
 
     /// Compares the estimates with volumes that were not used to fit the constants.
     ///
-    /// The bits of dark slices are reserved and not written. An estimate may therefore exceed the measured memory by the
-    /// bits of all slices. The bounds of time are wider than above, because the profile `dist` is faster than the builds of
-    /// [`VOLUMES`].
+    /// The bits of dark slices are reserved and not written. An estimate may therefore exceed the measured memory by
+    /// the bits of all slices. The bounds of time are wider than above, because the profile `dist` is faster than the
+    /// builds of [`VOLUMES`].
     #[test]
     fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
         for (work, megabytes, seconds) in HELD_OUT {

@@ -12,7 +12,7 @@ pub struct FrameBufferStats {
     /// Number of swap requests that took effect.
     pub swaps: u64,
     /// Number of lines that were overwritten before the beam had shown all of their pixels. Either the newer region
-    /// arrived too early, or the older region arrived too late. As a third possible cause, the buffer was shown for only
-    /// one field, which scans only every second line.
+    /// arrived too early, or the older region arrived too late. Otherwise the buffer was shown for only one field,
+    /// which scans only every second line.
     pub lines_never_shown: u64,
 }
