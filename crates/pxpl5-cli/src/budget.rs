@@ -81,8 +81,8 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` is a text for the
-    /// user: how to reduce the work.
+    /// Returns an error if a fixed set of experiments would exceed the budget. The check takes place before the first
+    /// experiment. `advice` is a text for the user: how to reduce the work.
     ///
     /// # Errors
     ///
@@ -155,8 +155,8 @@ impl Taken {
 
 impl BudgetArgs {
     /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
-    /// is the cost of the finished fraction of this part, and `part` is this fraction (0 to 1). The remaining fields
-    /// are assumed to cost the same.
+    /// is the cost of the finished fraction of this part, and `part` is this fraction (0 to 1). Each remaining field is
+    /// assumed to cost as much as a finished field.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };

@@ -107,7 +107,8 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
-/// Estimated number of values that such a search tries: five values, and two bisections of 64 steps.
+/// Estimated number of values that a search over a setting tries: five values, and the values of two bisections. The
+/// range of a real setting has 64 steps.
 const VALUES: u64 = 12;
 
 /// Estimated maximum number of scene sizes that a search simulates: twice the bisection steps of the whole range.
@@ -191,8 +192,8 @@ impl LimitArgs {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// Returns the settings shared by all scene sizes. Their scene is a placeholder with one triangle, unless `--scene`
-    /// names a model.
+    /// Returns the settings shared by all scene sizes. The scene in these settings is a placeholder with one triangle,
+    /// unless `--scene` names a model.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         file.set("pipeline", "slats", "--pipeline")?;

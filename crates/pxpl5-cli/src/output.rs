@@ -49,7 +49,7 @@ impl OutputFolder {
     /// # Errors
     ///
     /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
-    /// because its rows may have taken hours.
+    /// because a new run would delete rows that may have taken hours to compute.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
@@ -73,8 +73,8 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable before the simulation begins, which may take hours. Folders created for this
-    /// check are then removed, so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. Folders
+    /// created for this check are then removed, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };

@@ -45,7 +45,7 @@ pub(crate) struct How<'a> {
     pub(crate) quiet: bool,
 }
 
-/// The outcome of a run. If the run was too short for statistics, the error is stored too.
+/// The outcome of a run. If the run was too short for statistics, the outcome has the error as well.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -172,8 +172,8 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// Returns the checkpoint that `--restore` names, with its file name. Checks that its field lies within
-    /// the run.
+    /// Returns the checkpoint that `--restore` names, with its file name. Checks that the field of the checkpoint lies
+    /// within the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let snapshot = self.read(path)?;

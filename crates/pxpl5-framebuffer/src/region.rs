@@ -39,7 +39,8 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// Returns the arrival time of the word with pixel `i` of the segment.
+    /// Returns the arrival time of the word with pixel `i` of the segment. `word` is the time in which the port
+    /// receives one word.
     pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
         self.first_at + word * u64::from(i)
     }
@@ -98,13 +99,14 @@ impl RegionWrite {
     }
 
     /// Iterates over the pixels that have arrived, line by line. A line that arrives in two messages is split into two
-    /// segments.
+    /// segments. `word` is the time in which the port receives one word.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
     }
 
-    /// Iterates over the segments of one row of the region. Segments that have not arrived are included.
+    /// Iterates over the segments of one row of the region. Segments that have not arrived are included. `word` is the
+    /// time in which the port receives one word.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;

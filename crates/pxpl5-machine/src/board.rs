@@ -5,7 +5,7 @@ use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
-/// Identifies one board of a machine, or the ring.
+/// One board of a machine, or the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
     /// The host workstation.
@@ -20,7 +20,7 @@ pub enum Board {
     Ring,
 }
 
-/// Describes one event of the simulation for a debugger or a log.
+/// A description of one event of the simulation, for a debugger or a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EventDescription {
     /// Simulated time of the event.
@@ -32,7 +32,8 @@ pub struct EventDescription {
 }
 
 impl Board {
-    /// Returns the host for port 0, and graphics processor `port - 1` for any other port.
+    /// Returns the board at a port of the host or of a graphics processor: the host for port 0, else graphics processor
+    /// `port - 1`.
     #[must_use]
     pub const fn of_processor(port: usize) -> Self {
         match port {

@@ -25,7 +25,7 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work, for runs that do not execute i860 code.
+    /// Times of the graphics processors' work. Runs without i860 code use these times.
     pub gp: GpTiming,
     /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
     /// from `gp` instead.
@@ -90,7 +90,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` marks all of them as fixed.
+    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` states if all these parameters
+    /// are fixed properties of a chip.
     pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
         table.entries().into_iter().map(move |Entry { info, value }| {
             let path = format!("{prefix}.{}", info.name);
@@ -201,7 +202,7 @@ impl MachineConfig {
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
-    /// Returns the parameters that differ from the preset's values, by path.
+    /// Returns the parameters that differ from the values of the preset. The keys are the paths of the parameters.
     ///
     /// The preset may lack a table, for example the table of a firmware or of another display. The parameters of such a
     /// table are compared with the values from the papers.
@@ -225,7 +226,7 @@ impl MachineConfig {
         self.parameters().into_iter().filter(is_supposed).collect()
     }
 
-    /// Returns the numbers of boards and all parameters, by path.
+    /// Returns the numbers of boards and the values of all parameters, each with its path.
     #[must_use]
     pub fn settings(&self) -> Vec<(String, Value)> {
         let [n_gps, n_renderers] = self.boards();
@@ -316,11 +317,11 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
-    /// Returns an error for a ring in which commands for full renderer FIFOs can block all channels.
+    /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
     ///
-    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the pixels would wait for
-    /// ever. Each renderer receives one message at a time, and each graphics processor sends on at most
-    /// `source_channels` channels.
+    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the renderers would therefore
+    /// wait for ever. Three limits apply to the channels that such commands occupy: `fifo_channels`, one channel for
+    /// each renderer, and `source_channels` channels for each graphics processor.
     fn check_channels(&self) -> Result<(), SettingError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);

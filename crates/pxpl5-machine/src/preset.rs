@@ -100,7 +100,8 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
-    /// Returns the machine with the times of its i860 code for primitives, instead of published or fitted times.
+    /// Returns this machine with other times for primitives: the times that its i860 code needs, instead of published
+    /// or fitted times.
     ///
     /// `of` is the pipeline that uses the code. A machine without a code version gets the times of compiled code.
     #[must_use]

@@ -34,8 +34,8 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Assigns the regions to the renderers in turn. The order is: top regions of the left eye, top regions of the
-    /// right eye, bottom regions of the left eye, bottom regions of the right eye.
+    /// Assigns the regions to the renderers in turn. All top regions come before all bottom regions, and in each half
+    /// the left eye comes before the right eye.
     ///
     /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent to the regions in this
     /// order, so that all renderers have work.
@@ -90,7 +90,7 @@ impl Binding {
     }
 }
 
-/// Reorders regions so that left and right eye alternate while both eyes have regions left. The first region stays
+/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The region that was first stays
 /// first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };

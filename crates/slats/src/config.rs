@@ -56,7 +56,8 @@ impl SlatsConfig {
         }
     }
 
-    /// Returns the place in a frame buffer that receives a region.
+    /// Returns the destination of a region's pixels: the frame buffer of the eye, pixel buffer `buffer`, and the lines
+    /// of field `field`.
     ///
     /// While a field is written into its lines, the beam scans the other lines of the frame. Interlace thus acts as a
     /// double buffer. Without a backup buffer, only buffer 0 is needed.

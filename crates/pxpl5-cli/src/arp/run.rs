@@ -75,8 +75,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory it has 1
-/// or 0 for an update that was due, shown or missed.
+/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory, the
+/// line has three columns with 1 or 0: update due, update shown, update missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();

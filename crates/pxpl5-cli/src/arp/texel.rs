@@ -63,7 +63,7 @@ fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
 }
 
 /// Returns the four texels that a pixel shows, with weights that sum to 1. At a cube corner the fourth texel does not
-/// exist (`None`). Its weight then applies to the mean of the other three.
+/// exist (`None`). The weight of the fourth texel then applies to the mean of the other three texels.
 fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>, f64); 4] {
     let weights = footprint.weights(display.timing.weight_bits);
     let one = f64::from(1_u32 << (2 * display.timing.weight_bits));

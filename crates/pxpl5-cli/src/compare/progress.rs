@@ -21,8 +21,8 @@ pub(super) struct CompareProgress {
 const LINES: u64 = 10;
 
 impl CompareProgress {
-    /// Shows the progress of a comparison of `rows` rows. `found` rows were already finished, because the comparison is
-    /// resumed.
+    /// Shows the progress of a comparison of `rows` rows. If the comparison is resumed, `found` of these rows were
+    /// already finished.
     pub(super) fn new(found: usize, rows: usize, quiet: bool) -> Self {
         let progress = Self {
             bar: terminal::progress(0, "runs", quiet),
@@ -60,7 +60,8 @@ impl CompareProgress {
         self.bar.finish_and_clear();
     }
 
-    /// Returns the time left as text, assuming that the remaining runs take as long as the runs that have ended.
+    /// Returns the estimated time left as text. The estimate assumes that the remaining runs take as long as the
+    /// finished runs.
     fn left(&self) -> String {
         let [done, of] = [&self.runs.0, &self.runs.1].map(|count| count.load(Ordering::Relaxed));
         let left = self.begun.elapsed().as_secs_f64() / done.max(1) as f64 * of.saturating_sub(done) as f64;

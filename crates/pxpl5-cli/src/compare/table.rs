@@ -53,7 +53,7 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text
 }
 
-/// Returns a sentence for each method of the intervals, with the rows that use the method.
+/// Returns a sentence for each statistical method of confidence intervals, with the rows that use the method.
 fn intervals(comparison: &Comparison) -> String {
     let confidence = percent(comparison.confidence);
     let mut text = String::new();
@@ -73,15 +73,15 @@ fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row. If a bootstrap gave the row's interval, the lengths of its series and blocks in fields
-/// follow.
+/// Returns the name of a row. If a bootstrap gave the confidence interval of the row, the lengths of the row's series
+/// and of its blocks follow, in fields.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
-/// Returns sentences about the seeds of the rows, if the comparison added seeds for a precision.
+/// Returns sentences about the number of seeds of each row, if the comparison added seeds to reach a given precision.
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {

@@ -145,8 +145,8 @@ impl Session {
         })
     }
 
-    /// Resumes the run by calling `piece`, which runs to the next stop. Returns the reason and the simulated time of
-    /// this stop as text.
+    /// Resumes the run by a call of `piece`, which runs to the next stop. Returns the reason for this stop and its
+    /// simulated time as text.
     fn go(&mut self, piece: impl FnOnce(&mut Stepper) -> Pause) -> String {
         let mut text = match piece(&mut self.stepper) {
             Pause::Reached => String::new(),

@@ -19,7 +19,7 @@ pub(super) struct RunOptions {
 /// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
-/// A range of consecutive memory words, with the address of the first.
+/// A range of consecutive memory words, with the address of the first word.
 struct Span {
     address: u32,
     words: Vec<u32>,

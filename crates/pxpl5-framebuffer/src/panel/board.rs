@@ -10,8 +10,8 @@ use pxpl5_wire::display::{
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Frame buffer boards with panels that share a sync generator. Each picture that is drawn at the same time has its own
-/// board.
+/// Panels with their frame buffer boards, which share a sync generator. There is one board, or two boards for the eyes
+/// of a stereo pair.
 ///
 /// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///
@@ -25,8 +25,8 @@ pub struct Panel {
     surfaces: Vec<Surface>,
     /// One board for each surface. Port n belongs to the board with index n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
-    /// The boards of an interlaced panel in their state of one period ago. The lines of this state are still visible
-    /// between the new lines.
+    /// Copies of the boards of an interlaced panel, made one period ago. The previous period lit the lines that the
+    /// current period skips.
     older: Vec<DoubleBuffer>,
     scans: u64,
 }
@@ -67,13 +67,14 @@ impl Panel {
         self.numbers.interlace == 1
     }
 
-    /// Returns the index of the first line that a period lights, and the distance between lit lines.
+    /// Returns the index of the first line that a period lights, and the distance between lit lines (1, or 2 if
+    /// interlaced).
     const fn rows(&self, period: PeriodNumber) -> (u64, u64) {
         if self.is_interlaced() { (period.0 % 2, 2) } else { (0, 1) }
     }
 
     /// Returns the number of pixels that a rolling scan lights before pixel (x, y). For a global scan the result is the
-    /// number of all pixels.
+    /// number of all pixels, because all pixels are lit at the end of the scan.
     fn order(&self, x: u64, y: u64, rows: (u64, u64)) -> u64 {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
@@ -96,7 +97,8 @@ impl Panel {
         picture
     }
 
-    /// Returns the times at which the corner pixels of a surface are lit in a period.
+    /// Returns the times at which the corner pixels of a surface are lit in a period. The first and the last light of
+    /// the surface are among these times for every direction of the scan.
     fn corners(&self, surface: usize, period: PeriodNumber) -> impl Iterator<Item = Time> {
         let [right, low] = [self.numbers.width as u32 - 1, (self.numbers.height as u32).saturating_sub(2)];
         let bottom = self.numbers.height as u32 - 1;

@@ -11,8 +11,8 @@ const MOST_REGIONS: u64 = 128;
 /// Number of microseconds in a second.
 const US_PER_S: u64 = 1_000_000;
 
-/// The parameters of a panel, a display without NTSC timing. A table of parameters need not have all parameters. Each
-/// missing parameter has a default.
+/// The parameters of a panel, a display without NTSC timing. [`PanelNumbers::of`] reads these parameters from a table
+/// and uses a default for each missing parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
     /// Width of the panel: visible pixels in each line.
@@ -23,7 +23,7 @@ pub struct PanelNumbers {
     pub refresh_hz: u64,
     /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
     pub interlace: u64,
-    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit at once (global).
+    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
     pub scan: u64,
     /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
     pub direction: u64,
