@@ -47,6 +47,7 @@ pub(crate) use store::{line_of, lock, opened};
 
 pub use error::SweepError;
 pub use header::Header;
+pub use inputs::hash_of_model;
 pub use merge::{Merged, merge};
 pub use point::{Status, SweepRow};
 pub use run::{RunOptions, run, run_stoppable};

@@ -14,13 +14,13 @@ use crate::version::VERSION;
 use clap::Args;
 use pxpl5::Fingerprint;
 use pxpl5::scene::Scene;
-use pxpl5::sweep::{Header, Shard, Status, Store, SweepRow};
+use pxpl5::sweep::{Header, Shard, Status, Store, SweepRow, hash_of_model};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -137,9 +137,10 @@ fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Head
             json!({ "paths": axis.paths, "steps": steps })
         })
         .collect();
-    // The hash also covers the contents of model files, so that a changed file is not resumed.
+    // The hash also covers the scenes of model files, so that a changed file is not resumed.
     let version = VERSION;
-    let inputs: Vec<String> = scene_files(space).iter().map(|path| of_contents(path)).collect();
+    let inputs: Vec<String> =
+        scene_files(space).iter().map(|path| format!("{}={}", path.display(), hash_of_model(path))).collect();
     // The hash covers everything that determines the rows.
     let named = json!([version, settings, axes, measure, inputs]).to_string();
     let seed = space.settings.get("seed").and_then(toml::Value::as_integer).unwrap_or(1);
@@ -167,11 +168,6 @@ fn scene_files(space: &VolumeSpace) -> Vec<PathBuf> {
     });
     let all = space.settings.get("scene").map(plain).into_iter().chain(of_axes);
     all.map(PathBuf::from).filter(|path| path.is_file()).collect()
-}
-
-fn of_contents(path: &Path) -> String {
-    let contents = std::fs::read(path).map(|bytes| Fingerprint::of(&bytes).to_string());
-    format!("{}={}", path.display(), contents.unwrap_or_default())
 }
 
 /// A cache of loaded scenes by name and number of primitives.
