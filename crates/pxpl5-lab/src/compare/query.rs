@@ -3,6 +3,7 @@
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
+use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
@@ -17,7 +18,7 @@ use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
 /// all observations of a run in memory to evaluate its errors in several ways.
@@ -84,28 +85,6 @@ pub struct Comparison {
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Count of finished runs. The number of all runs grows when seeds are added.
-struct Progress<'a> {
-    done: AtomicU64,
-    all: AtomicU64,
-    finished: &'a (dyn Fn(u64, u64) + Sync),
-}
-
-impl<'a> Progress<'a> {
-    fn new(all: u64, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
-        Self { done: AtomicU64::new(0), all: AtomicU64::new(all), finished }
-    }
-
-    fn add(&self, runs: u64) {
-        self.all.fetch_add(runs, Ordering::Relaxed);
-    }
-
-    fn step(&self) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        (self.finished)(done, self.all.load(Ordering::Relaxed));
-    }
-}
-
 impl CompareQuery {
     /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
     /// number of all runs.
@@ -146,6 +125,23 @@ impl CompareQuery {
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, StudyError> {
+        self.run_stoppable(store, &Arc::default(), finished, ended)
+    }
+
+    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop` to true. Runs in progress
+    /// then end after at most 60 fields, and their rows are not stored. A search for the largest number of triangles
+    /// runs to its end.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`StudyError::Stopped`].
+    pub fn run_stoppable(
+        &self,
+        store: Option<&CompareStore>,
+        stop: &Arc<AtomicBool>,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
@@ -153,7 +149,7 @@ impl CompareQuery {
         let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
-        let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
+        let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
         // No further row starts after one could not be stored.
         let is_failed = AtomicBool::new(false);
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
@@ -164,7 +160,10 @@ impl CompareQuery {
             if is_failed.load(Ordering::Relaxed) {
                 return Ok(None);
             }
+            progress.check_stopped()?;
             let row = self.row(contender, &scene, &progress)?;
+            // A row whose runs were stopped is not a result.
+            progress.check_stopped()?;
             if self.limits {
                 progress.step();
             }
@@ -300,18 +299,24 @@ impl CompareQuery {
         progress: &Progress<'_>,
     ) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(contender, *seed, scene);
+            let trial = self.trial(contender, *seed, scene, progress);
             progress.step();
             trial
         })
     }
 
-    fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+    fn trial(
+        &self,
+        contender: &ComparedPipeline,
+        seed: u64,
+        scene: &Arc<Scene>,
+        progress: &Progress<'_>,
+    ) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
         let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        contender.trial(&plan, scene, pixels)
+        contender.trial(&plan, scene, pixels, progress.host())
     }
 
     /// Runs a row: once for each seed, then with more seeds while the interval of its mean is wider than the query
@@ -334,6 +339,7 @@ impl CompareQuery {
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
             let until = self.until.filter(|_| helps);
+            progress.check_stopped()?;
             let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
             if more == 0 {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
@@ -346,7 +352,8 @@ impl CompareQuery {
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.rehearsed.clone());
+            let experiment =
+                plan.experiment(Arc::clone(scene)).host(progress.host()).with_dry_run(first.rehearsed.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }

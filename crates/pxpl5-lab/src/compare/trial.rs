@@ -4,7 +4,7 @@ use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
-use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
+use pxpl5_run::{DryRun, DuePictures, Host, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
@@ -46,9 +46,15 @@ impl ComparedPipeline {
     }
 
     /// Runs one plan of the row. An error is returned as its message.
-    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
+    pub(super) fn trial(
+        &self,
+        plan: &Plan,
+        scene: &Arc<Scene>,
+        pixels: Pixels,
+        host: impl Host + 'static,
+    ) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
-        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
+        let experiment = plan.experiment(Arc::clone(scene)).host(host).pixels(pixels).results_from(from);
         let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
