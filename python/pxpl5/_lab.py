@@ -6,7 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._checks import Strict, names, optional, whole
@@ -21,6 +22,10 @@ from ._progress import Progress, reporting
 from ._tables import table_of
 from ._types import RigData
 
+if TYPE_CHECKING:
+    from ._rows import Cell, FigureRow, LevelRow, PipelineRow, ReadingRow
+    from ._study_types import ComparisonData, FigureData
+
 
 def presets() -> dict[str, str]:
     """Names of the machines that are built in, those of the papers first, each with what it is and its source."""
@@ -32,7 +37,7 @@ def builtin_scenes() -> dict[str, str]:
     return dict(_native.builtin_scenes())
 
 
-def pipelines() -> Table:
+def pipelines() -> Table[PipelineRow]:
     """A row for each pipeline: name, family, about, preset, whether it has a closed form, and its keys as JSON."""
     return table_of(_native.pipelines(), {"about": "what it is and where it was published"})
 
@@ -75,13 +80,14 @@ def figure_ids() -> dict[str, str]:
 
 def figures(
     ids: str | Sequence[str] | None = None, *, level: LevelName | str = "transaction", progress: Progress = None
-) -> Table:
+) -> Table[FigureRow]:
     """The papers' figures, measured: a row for each with published and simulated value, unit, error and source.
 
     Without ``ids`` it takes minutes, since intervals are found too (columns low and high); with them each figure is measured alone.
 
     Raises :class:`SettingError` for a number that there is not.
     """
+    rows: list[FigureData]
     with reporting(progress, "figures") as told:
         if ids is None:
             rows = _native.figures(level, told)
@@ -177,6 +183,8 @@ def limit_over(
         raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
     _positive("rate_hz", rate_hz)
     _positive("latency_fields", latency_fields)
+    # An unknown key is refused with the nearest one, before its range is asked for.
+    made.settings.copy().set(f"{over}=1", "over")
     with reporting(progress, "values") as told:
         found = _native.limit_over(
             made.settings,
@@ -188,8 +196,19 @@ def limit_over(
             fields=optional("fields", fields, LEAST_FIELDS),
             progress=told,
         )
-    tried = [(float(value), bool(hit)) for value, hit in found.pop("tried")]
-    return OverLimit(tried=tried, **found)
+    return OverLimit(
+        over=found["over"],
+        goal=found["goal"],
+        fields=found["fields"],
+        low=found["low"],
+        high=found["high"],
+        least=found["least"],
+        most=found["most"],
+        reached=found["reached"],
+        tried=[(float(value), bool(hit)) for value, hit in found["tried"]],
+        missed_at=found["missed_at"],
+        because=found["because"],
+    )
 
 
 #: Least fields of a search: shorter runs end during the warm-up of every pipeline.
@@ -243,22 +262,23 @@ class Comparison(Strict):
 
     _fields = ("data",)
 
-    def __init__(self, data: dict[str, Any]) -> None:
+    def __init__(self, data: ComparisonData) -> None:
         #: The object of ``pxpl5 compare --json``.
         self.data = data
 
     @property
-    def table(self) -> Table:
+    def table(self) -> Table[dict[str, Cell]]:
         """A row for each pipeline: latency, head to light, rate, errors in pixels and most triangles; nested names with points.
 
         Means over seeds have ``.mean``, and ``.low``, ``.high`` and ``.method`` of their 95 % intervals. ``due`` and ``not_shown``
         count the pictures, ``error.n`` the evaluated pixels.
         """
         left_out = ("end_to_end", "causes", "predictors", "picture", "errors", "display_counters")
-        rows = [{key: value for key, value in row.items() if key not in left_out} for row in self.data["pipelines"]]
-        for row in rows:
-            if isinstance(row.get("error"), dict):
-                row["error"] = {key: value for key, value in row["error"].items() if key != "distribution_px"}
+        rows = []
+        for compared in self.data["pipelines"]:
+            row = {key: value for key, value in compared.items() if key not in left_out}
+            row["error"] = {key: value for key, value in compared["error"].items() if key != "distribution_px"}
+            rows.append(row)
         return table_of(rows)
 
     def plot(
@@ -294,7 +314,7 @@ class Comparison(Strict):
                 row["not_shown"],
                 row["error"]["mean_px"]["mean"],
                 row["error"]["n"],
-                row.get("triangles_possible"),
+                row["triangles_possible"],
             ]
             for row in self.data["pipelines"]
         ]
@@ -310,16 +330,37 @@ def compare(
     only: str | Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
+    confidence: float = 0.95,
+    until_precision: str | None = None,
+    max_seeds: int | None = None,
+    out: str | PathLike[str] | None = None,
+    resume: bool = False,
     settings: Mapping[str, object] | None = None,
     progress: Progress = None,
     **keys: object,
 ) -> Comparison:
     """Every pipeline with the same settings, a run for each seed: errors in pixels by cause, latencies, and, on demand, limits.
 
-    ``fields`` is the length of each run: None for the length of a recording, else 300. ``only`` names the rows that are run; all where it is empty. A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
+    - ``fields``: length of each run; default: the length of a recording, else 300.
+    - ``only``: names of the rows that are run; all where it is empty.
+    - ``head``: a motion with a name, or the path of a recording. A head of ``synthetic`` moves otherwise in every seed.
+    - ``confidence``: that of all intervals, between 0 and 1.
+    - ``until_precision``: greatest width of the interval of each mean error, from end to end, as a share of the mean (``"10%"``) or in
+      pixels (``"0.2px"``). A row gets more seeds until its interval is narrower, up to ``max_seeds`` (default 50). Only for the head
+      ``synthetic``.
+    - ``out``: a folder. Each row is stored in it as soon as its runs have ended, and comparison.json at the end, as
+      ``pxpl5 compare --out`` does, but without pictures. After an interruption, ``resume=True`` keeps the finished rows of the same
+      comparison and runs only the others.
 
-    Raises :class:`SettingError` for a setting that is wrong, or a run too short to judge anything.
+    Ctrl-C ends the runs in progress, but not a search for limits. Raises :class:`SettingError` for a setting that is wrong, or a run
+    too short to judge anything, and :class:`SweepError` for a folder that cannot be used, is in use, or holds another comparison.
     """
+    if not 0 < confidence < 1:
+        raise SettingError(f"confidence: expected a number between 0 and 1, found {confidence!r}")
+    if max_seeds is not None and until_precision is None:
+        raise SettingError("max_seeds: expected until_precision beside it, found none")
+    if resume and out is None:
+        raise SettingError("resume: expected the folder out beside it, found none")
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
     if made.motion is not None:
@@ -330,8 +371,23 @@ def compare(
         numbers = list(range(1, whole("seeds", seeds, 1) + 1))
     else:
         numbers = [whole("seeds", seed) for seed in seeds]
+    folder = None if out is None else Path(out)
     with reporting(progress, "runs") as told:
-        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, told))
+        data = _native.compare(
+            made.settings,
+            names("only", only),
+            numbers,
+            limits=limits,
+            confidence=confidence,
+            until_precision=until_precision,
+            max_seeds=optional("max_seeds", max_seeds, 2),
+            folder=None if folder is None else folder / "rows",
+            resume=resume,
+            progress=told,
+        )
+    if folder is not None:
+        (folder / "comparison.json").write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
+    return Comparison(data)
 
 
 def rig(
@@ -380,7 +436,7 @@ LEVEL_DEFINITIONS = {
 }
 
 
-def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table:
+def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table[LevelRow]:
     """The levels of modelling beside each other: a row for each, with its errors and its speed.
 
     By default the measurement that is recorded in the repository. With ``experiments`` the errors are measured now, over so many random
@@ -401,7 +457,7 @@ READING_DEFINITIONS = {
 }
 
 
-def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table:
+def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[ReadingRow]:
     """Interpretations of the papers' open questions, ranked by how well they explain the figures of Rendering Control.
 
     A row for each interpretation at the analytic level, then the ``best`` of them at the transaction level. ``seeds`` and ``frames``
@@ -410,8 +466,8 @@ def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Pro
     with reporting(progress, "runs") as told:
         found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), told)
     rows = [
-        {"evaluated_at": level, **{key: fit[key] for key in READING_DEFINITIONS if key != "evaluated_at"}}
-        for level in ("analytic", "transaction")
-        for fit in found[level]
+        {"evaluated_at": level, **{key: value for key, value in fit.items() if key in READING_DEFINITIONS}}
+        for level, fits in (("analytic", found["analytic"]), ("transaction", found["transaction"]))
+        for fit in fits
     ]
     return table_of(rows, READING_DEFINITIONS)
