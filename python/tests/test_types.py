@@ -2,12 +2,13 @@
 
 import re
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, get_args, is_typeddict
 
 import numpy as np
 import pytest
 
 import pxpl5
+import pxpl5.result_types
 from pxpl5 import _fits, _native, _report_types, _rows, _study_types, _types
 from pxpl5._lab import Made
 
@@ -135,3 +136,11 @@ def test_no_signature_has_the_type_any() -> None:
 def test_a_table_has_the_type_of_its_rows() -> None:
     """At run time it is only an annotation."""
     assert get_args(pxpl5.Table[dict[str, float]]) == (dict[str, float],)
+
+
+def test_all_types_can_be_imported_and_say_what_they_are() -> None:
+    modules = (_report_types, _rows, _study_types, _types)
+    found = {name for module in modules for name, thing in vars(module).items() if is_typeddict(thing)}
+    assert found <= set(pxpl5.result_types.__all__)
+    undescribed = {name for name in found if "dict(" in (getattr(pxpl5.result_types, name).__doc__ or "dict(")}
+    assert undescribed == {"WhatIfData", "WhatIfRow", "LevelRow"}, "a type with points in its keys can have no docstring"
